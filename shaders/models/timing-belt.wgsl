@@ -171,16 +171,16 @@ fn prepare(i: Inputs) -> Prepared {
     let peak_complete_slack = if_known(whole_1, first_load_slack_1);
     let n258 = if_known(whole_1, last_load_tight);
     let n259 = if_known(whole_1, last_load_slack);
-    set_star_tight(whole(i.teeth_in_mesh), constant(0.0));
-    set_star_slack(whole(i.teeth_in_mesh), constant(0.0));
-    set_first_tight(whole(i.teeth_in_mesh), peak_complete_tight);
-    set_first_slack(whole(i.teeth_in_mesh), peak_complete_slack);
-    set_own_tight(whole(i.teeth_in_mesh), peak_complete_tight);
-    set_own_slack(whole(i.teeth_in_mesh), peak_complete_slack);
-    set_before_tight(whole(i.teeth_in_mesh), n258);
-    set_before_slack(whole(i.teeth_in_mesh), n259);
-    set_last_tight(whole(i.teeth_in_mesh), n258);
-    set_last_slack(whole(i.teeth_in_mesh), n259);
+    set_star_tight(min(whole(i.teeth_in_mesh), 60u), constant(0.0));
+    set_star_slack(min(whole(i.teeth_in_mesh), 60u), constant(0.0));
+    set_first_tight(min(whole(i.teeth_in_mesh), 60u), peak_complete_tight);
+    set_first_slack(min(whole(i.teeth_in_mesh), 60u), peak_complete_slack);
+    set_own_tight(min(whole(i.teeth_in_mesh), 60u), peak_complete_tight);
+    set_own_slack(min(whole(i.teeth_in_mesh), 60u), peak_complete_slack);
+    set_before_tight(min(whole(i.teeth_in_mesh), 60u), n258);
+    set_before_slack(min(whole(i.teeth_in_mesh), 60u), n259);
+    set_last_tight(min(whole(i.teeth_in_mesh), 60u), n258);
+    set_last_slack(min(whole(i.teeth_in_mesh), 60u), n259);
     let mass = select_(
         i.pitch_mass,
         i.pitch_mass,

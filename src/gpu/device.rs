@@ -24,6 +24,8 @@ pub struct Device {
     one_at_a_time: Arc<Mutex<()>>,
     /// Does it compute in f64, and as accurately as kernels rely on? False once the self-test has found that it does not.
     f64: Arc<AtomicBool>,
+    /// Has its driver passed the self-test? From then on kernels may do without the checks that wgpu adds.
+    trusted: Arc<AtomicBool>,
     /// Is it a GPU in hardware?
     pub(crate) is_hardware: bool,
     /// Of the adapter.
@@ -77,6 +79,7 @@ impl Device {
             failure,
             one_at_a_time: Arc::default(),
             f64,
+            trusted: Arc::default(),
             is_hardware: adapter.is_hardware(),
             name: adapter.name.clone(),
             limits,
@@ -91,6 +94,16 @@ impl Device {
     /// Kernels must do without f64 from now on.
     pub(crate) fn forgo_f64(&self) {
         self.f64.store(false, Ordering::Relaxed);
+    }
+
+    /// Has its driver passed the self-test?
+    pub(super) fn is_trusted(&self) -> bool {
+        self.trusted.load(Ordering::Relaxed)
+    }
+
+    /// Its driver has passed the self-test.
+    pub(super) fn trust(&self) {
+        self.trusted.store(true, Ordering::Relaxed);
     }
 
     /// An error of this device.

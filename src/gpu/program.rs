@@ -85,6 +85,34 @@ impl Program {
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu) with what naga or the driver says.
     pub(crate) fn new(device: &Device, source: &str, entries: &[&str]) -> Result<Self> {
+        Self::made(device, source, entries, |text| device.device.create_shader_module(text))
+    }
+
+    /// The same, on a driver that has passed its self-test without the checks of indices, loops and divisions that wgpu adds and every
+    /// invocation pays for.
+    ///
+    /// # Safety
+    /// Whatever the buffers hold: every index is below the length of its array, every loop ends, and no integer is divided by zero.
+    ///
+    /// # Errors
+    /// As [`Program::new`].
+    #[allow(unsafe_code, reason = "wgpu has no other way to leave its checks out")]
+    pub(crate) unsafe fn without_checks(device: &Device, source: &str, entries: &[&str]) -> Result<Self> {
+        if !device.is_trusted() {
+            return Self::new(device, source, entries);
+        }
+        Self::made(device, source, entries, |text| {
+            // SAFETY: what the caller promises of the text is what wgpu asks for.
+            unsafe { device.device.create_shader_module_trusted(text, wgpu::ShaderRuntimeChecks::unchecked()) }
+        })
+    }
+
+    fn made(
+        device: &Device,
+        source: &str,
+        entries: &[&str],
+        module_of: impl FnOnce(wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule,
+    ) -> Result<Self> {
         let module = parse(source).map_err(|problem| device.error(format!("a kernel does not compile: {problem}")))?;
         let memory = workgroup_memory(&module);
         if memory > device.limits.max_compute_workgroup_storage_size {
@@ -106,8 +134,7 @@ impl Program {
         });
         let pipeline_layout =
             gpu.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { bind_group_layouts: &[Some(&layout)], ..Default::default() });
-        let shader = gpu
-            .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("kernel"), source: wgpu::ShaderSource::Wgsl(source.into()) });
+        let shader = module_of(wgpu::ShaderModuleDescriptor { label: Some("kernel"), source: wgpu::ShaderSource::Wgsl(source.into()) });
         let pipeline = |entry: &&str| {
             let pipeline = gpu.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry),

@@ -2,7 +2,7 @@
 //! invocations, `cut` says.
 
 use super::constants::{LANE_BITS, Level, WINDOW};
-use super::cut::{Cut, Extras, MOST_GROUPS, MOST_ITERATIONS, Runs, covers_ranges};
+use super::cut::{Cut, Extras, MOST_GROUPS, MOST_ITERATIONS, Runs, RunsAlong, covers_ranges};
 use super::drawn::DrawnOnDevice;
 use super::held::{beyond_f32, refuse};
 use super::row_scenarios::RowScenarios;
@@ -268,6 +268,12 @@ impl KernelLayout {
                 runs = if serves { Runs::new(plan, &fast, asked, cut, fields.iterations) } else { None };
             }
         }
+        // A group of lanes may reach beyond the last level of the axis that its run lies along. What it finds there is left out.
+        if let Some(Runs { along: RunsAlong::Axis { dimension, .. }, .. }) = runs
+            && let FastDimension { inputs, values: Values::Table(_), .. } = &fast[dimension]
+        {
+            steady.resize(steady.len() + beyond(cut) * inputs.len(), Level::default());
+        }
         Ok(Self {
             fields,
             formula,
@@ -297,7 +303,11 @@ impl KernelLayout {
     pub fn with_lanes(plan: &Plan, limited_loops: bool, grouped: bool, extras: Extras) -> Result<(Self, Vec<SortedLane>)> {
         let layout = Self::new(plan, limited_loops, grouped, extras)?;
         match layout.sorted_lanes(plan) {
-            Some(lanes) => Ok((layout, lanes)),
+            Some(mut lanes) => {
+                // Beyond the last lane of the last column.
+                lanes.resize(lanes.len() + beyond(layout.cut), SortedLane::default());
+                Ok((layout, lanes))
+            }
             None => Ok((Self::new(plan, limited_loops, grouped, Extras { order: false, ..extras })?, Vec::new())),
         }
     }
@@ -386,6 +396,11 @@ pub fn push_level(plan: &Plan, dimension: &SpaceDimension, at: u64, entries: &mu
 
 fn constraints_on(plan: &Plan, input: usize) -> impl Iterator<Item = &crate::study::Constraint> {
     plan.study.constraints.iter().filter(move |it| it.quantity == Quantity::Input(input))
+}
+
+/// How many lanes beyond the last one a group of lanes may reach.
+fn beyond(cut: Cut) -> usize {
+    cut.group as usize - 1
 }
 
 fn scenario_table(plan: &Plan, product: &Product, steady: &mut Vec<Level>) -> ScenarioTable {

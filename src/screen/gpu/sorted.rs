@@ -122,7 +122,7 @@ impl SortedLanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::screen::gpu::cut::Extras;
+    use crate::screen::gpu::cut::{Extras, RunsAlong};
     use crate::screen::gpu::layout::{FormulaOnDevice, KernelLayout};
     use crate::study::Study;
     use std::path::Path;
@@ -177,6 +177,28 @@ capacity_axial_force_N = "min"
                 assert_eq!(onwards.finish.run(&inputs), expected);
             }
         }
+    }
+
+    #[test]
+    fn lanes_that_a_group_reaches_beyond_the_last_one_are_there() {
+        let plan = Plan::new(Study::parse_in(STUDY, "test.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")));
+        let (layout, lanes) = KernelLayout::with_lanes(&plan, true, true, Extras::ALL).expect("a device serves it");
+        let FormulaOnDevice::Own(own) = &layout.formula else { panic!("it draws nothing") };
+        let made = layout.sorted.as_ref().and_then(|it| it.made(&plan, own)).expect("they have an order");
+        assert!(layout.cut.group > 1 && lanes.len() == made.len() + layout.cut.group as usize - 1, "{} {}", lanes.len(), made.len());
+        // Runs along an axis that is a list.
+        let list: Vec<String> = (0..33).map(|it| format!("{}", 0.1 + 0.01 * f64::from(it * it) / 33.0)).collect();
+        let text = STUDY.replace("{ from = 0.1, to = 0.4, count = 31 }", &format!("[{}]", list.join(", ")));
+        assert_ne!(text, STUDY);
+        let plan = Plan::new(Study::parse_in(&text, "test.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")));
+        let entries = |extras| {
+            let layout = KernelLayout::new(&plan, true, true, extras).expect("a device serves it");
+            (layout.steady.len(), layout.runs.map(|it| it.along), layout.cut.group as usize)
+        };
+        let (without, none, _) = entries(Extras { axis: false, order: false, ..Extras::ALL });
+        let (with, along, group) = entries(Extras { order: false, ..Extras::ALL });
+        assert!(none.is_none() && matches!(along, Some(RunsAlong::Axis { .. })), "{none:?} {along:?}");
+        assert!(group > 1 && with == without + group - 1, "{with} {without} {group}");
     }
 
     #[test]

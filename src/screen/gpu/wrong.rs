@@ -42,6 +42,11 @@ impl Wrong {
         source
     }
 
+    /// Is a kernel what this program writes, with no piece of it replaced?
+    pub(super) fn keeps_text(&self) -> bool {
+        self.replace.is_empty()
+    }
+
     pub(super) fn is_grouped(&self) -> bool {
         self.grouped
     }
@@ -71,6 +76,10 @@ impl Wrong {
 
     pub(super) fn text(&self, source: String) -> String {
         source
+    }
+
+    pub(super) fn keeps_text(&self) -> bool {
+        true
     }
 
     pub(super) fn is_grouped(&self) -> bool {

@@ -73,7 +73,10 @@ impl Writer<'_> {
             }
             Rolled::PutLast(table, end, number) => {
                 let [end, number] = [end, number].map(|node| self.operand(node, Arithmetic::Bounded));
-                put(&mut text, indent, &self.put(self.list.table(table), &format!("whole({end})"), &number), "");
+                let table = self.list.table(table);
+                // Past the last place is the last place, as in f64: a number of teeth that a formula finds may be any number.
+                let place = format!("min(whole({end}), {}u)", self.list.tables[table].length - 1);
+                put(&mut text, indent, &self.put(table, &place, &number), "");
             }
             Rolled::Written(number, ..) => text = self.loop_once(number, indent),
             Rolled::Folded(number, at) => {

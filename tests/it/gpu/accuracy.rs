@@ -63,6 +63,27 @@ fn the_shipped_studies_are_decided_as_in_f64_on_both_sides_of_their_constraints(
     }
 }
 
+#[test]
+fn more_teeth_than_a_table_holds_touch_no_other_point() {
+    // Up to 100 teeth in mesh by the formula, in tables of 61 numbers: such a point has no value, and what it writes must stay its own.
+    let text = include_str!("../formulas/camshaft.toml");
+    let text = with(text, "to = 40", "to = 200");
+    let plan = Plan::new(Study::parse_in(&text, "study.toml", "tests/it/formulas".as_ref()).unwrap_or_else(|errors| panic!("{errors}")));
+    let kernel = kernel(&plan.study.model);
+    let points = points_of_study(&plan, 40_000, 2);
+    let report = compare(&kernel, &plan.study.model, &plan.study.constraints, &points).expect("the device works");
+    report.require().unwrap_or_else(|error| panic!("{error}"));
+    let source = PointKernel::source(&plan.study.model, &[]).expect("it has a kernel");
+    let is_write = |line: &str| line.trim_start().starts_with("set_") && line.contains("(min(whole(");
+    let unlimited = |line: &str| if is_write(line) { line.replace(", 60u)", ", 9999u)") } else { line.to_owned() };
+    let beyond: Vec<String> = source.lines().map(unlimited).collect();
+    let beyond = beyond.join("\n");
+    assert_ne!(beyond.trim_end(), source.trim_end());
+    let kernel = PointKernel::from_source(&device().device, &plan.study.model, &beyond).expect("it compiles all the same");
+    let report = compare(&kernel, &plan.study.model, &plan.study.constraints, &points).expect("the device works");
+    assert!(report.require().is_err(), "nobody notices that other points are written over");
+}
+
 /// The text with one piece replaced.
 fn with(text: &str, piece: &str, other: &str) -> String {
     assert!(text.contains(piece), "the shader has no {piece}");

@@ -13,7 +13,7 @@ pub enum Whole {
     Place(Place),
     /// A number of the formula.
     Of(Node),
-    /// The same, but not above a limit: the end of a loop.
+    /// The same, but not above a limit: the end of a loop, or of a table.
     End(Node, i64),
 }
 
@@ -162,7 +162,9 @@ impl Reader<'_> {
                 let of = place.of.expect("only loops write at places");
                 self.operations.loops[usize::from(of)].stores.push(Store { table, place, number });
             }
-            Whole::Of(end) => {
+            // Past the last place is the last place: nothing else keeps a number of teeth that a formula finds inside the table.
+            Whole::End(end, last) => {
+                assert_eq!(last + 1, self.lengths[usize::from(table)] as i64, "the last place of a table");
                 let before = self.versions[usize::from(table)];
                 self.versions[usize::from(table)] = self.operations.push(Operation::Rolled(Rolled::PutLast(before, end, number)));
             }

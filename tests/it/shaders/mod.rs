@@ -62,6 +62,8 @@ struct Reader<'a> {
     problem: Option<String>,
     /// The names of the tables, by number, and what each was last written as.
     tables: Vec<String>,
+    /// How many numbers each of them has.
+    lengths: Vec<usize>,
     versions: Vec<Node>,
     /// Of every loop: the numbers of its state that are in use.
     states: Vec<Vec<u8>>,
@@ -440,8 +442,9 @@ fn difference(
     let before = recording.operations.len();
     let (open, left_at_zero, problem) = Default::default();
     let (calls, tables) = (0, tables.to_vec());
+    let lengths = list.tables.iter().map(|table| table.length).collect();
     let operations = &mut recording;
-    let mut reader = Reader { module: &module, operations, leaf, calls, problem, tables, versions, states, open, left_at_zero };
+    let mut reader = Reader { module: &module, operations, leaf, calls, problem, tables, lengths, versions, states, open, left_at_zero };
     let found = reader.results(function);
     let (calls, versions) = (reader.calls, reader.versions.clone());
     if reader.problem.is_some() {
@@ -535,7 +538,9 @@ fn another_loop_in_a_shader_is_noticed() {
         ("min(whole(i.teeth_in_mesh), 60u)", "min(whole(i.teeth_in_mesh), 59u)"),
         ("tight[place_0 + 1u]", "tight[place_0]"),
         ("set_star_slack(place_1, t_star_slack)", "set_star_slack(place_1, t_star_tight)"),
-        ("set_star_tight(whole(i.teeth_in_mesh)", "set_star_slack(whole(i.teeth_in_mesh)"),
+        ("set_star_tight(min(whole(i.teeth_in_mesh)", "set_star_slack(min(whole(i.teeth_in_mesh)"),
+        ("set_own_slack(min(whole(i.teeth_in_mesh), 60u)", "set_own_slack(min(whole(i.teeth_in_mesh), 61u)"),
+        ("set_own_slack(min(whole(i.teeth_in_mesh), 60u)", "set_own_slack(whole(i.teeth_in_mesh)"),
         ("tight_before = ", "short_before = "),
         ("inward_slack(p, place_0)", "inward_tight(p, place_0)"),
         ("star_tight(p, whole(", "star_slack(p, whole("),

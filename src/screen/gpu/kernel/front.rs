@@ -74,7 +74,8 @@ impl Prelude<'_> {
             let bins = bins(&self.coordinates);
             let bin = |number: usize| {
                 let [low, scale] = [["x", "y"], ["z", "w"]][number];
-                format!("u32(clamp((keys.k{number}.x - known.table.{low}) * known.table.{scale}, 0.0, {}.0))", bins - 1)
+                // The whole number is cut, and not what it is made from: that may be undefined.
+                format!("min(u32((keys.k{number}.x - known.table.{low}) * known.table.{scale}), {}u)", bins - 1)
             };
             let last = objectives.len() - 1;
             let at = if last == 1 { bin(0) } else { format!("{} * {bins}u + {}", bin(0), bin(1)) };

@@ -17,7 +17,8 @@ impl Prelude<'_> {
             lines.push(format!("let h{number} = bins_of(lane.t{at}, HISTOGRAM_{number}, PER_UNIT_{number}, {bins}.0);"));
             // Where f64 has a value on the upper edge of the last bin, it belongs to that bin: never a sure answer here.
             lines.push(format!("if h{number}.x != h{number}.y || !is_known(lane.t{at}) {{ return false; }}"));
-            add.push(format!("atomicAdd(&counts[u32({offset} + i32(h{number}.x) + 1)], 1u);"));
+            // An undefined bin, which a comparison need not notice, must not become a place outside the counts.
+            add.push(format!("atomicAdd(&counts[{offset}u + min(u32(h{number}.x + 1.0), {}u)], 1u);", bins + 1));
             offset += bins + 2;
         }
         lines.extend(add);
