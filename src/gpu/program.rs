@@ -92,7 +92,8 @@ impl Program {
     /// invocation pays for.
     ///
     /// # Safety
-    /// Whatever the buffers hold: every index is below the length of its array, every loop ends, and no integer is divided by zero.
+    /// With what the buffers hold when it is dispatched, every index is below the length of its array, every loop ends, and no integer is
+    /// divided by zero.
     ///
     /// # Errors
     /// As [`Program::new`].

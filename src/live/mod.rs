@@ -36,6 +36,8 @@ use toml::de::{DeTable, DeValue};
 pub const NOTICED: Duration = Duration::from_millis(50);
 /// How many times as long a design of a coarser grid takes, as long as nothing else is known.
 const SLOWNESS: f64 = 3.0;
+/// One scenario among so many that every design must still be judged in takes no time.
+const FEW_NEW: u64 = 4;
 /// What takes every design waits this long, for somebody who drags a slider on.
 const PAUSE: Duration = Duration::from_millis(250);
 /// Seconds that counting feasible designs may take; beyond, the sample alone is told.
@@ -190,14 +192,15 @@ impl Live {
         let drawn = if is_known { None } else { coarse::drawn_seconds(plan, self.threads, control)? };
         let expected = drawn.unwrap_or_else(|| self.expected(plan, set.count(plan.scenarios())));
         // Where only bounds have moved, the exact front comes soon.
-        let is_long = expected > NOTICED.as_secs_f64() && !search.knows_all_in(&set);
+        let is_soon = search.lacks(&set).is_some_and(|new| FEW_NEW * new <= set.count(plan.scenarios()));
+        let is_long = expected > NOTICED.as_secs_f64() && !is_soon;
         if is_long && self.coarse(&mut search, &set, expected, start, control, tell)? {
             pause(control, coarse::to_be_seen(expected))?;
         }
         let designs = plan.designs();
-        let (rows, set) = if is_by_bounds(plan, expected) {
+        let (rows, set, next) = if is_by_bounds(plan, expected) {
             // Of very many designs most are settled in boxes.
-            (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default())
+            (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default(), WorkingSet::default())
         } else {
             search.exact(set, &mut |search, set, points, missing| {
                 // The exact front comes before anybody has drawn this one.
@@ -221,8 +224,8 @@ impl Live {
         };
         let scenarios = set.count(plan.scenarios());
         if scenarios > 0 {
-            self.note(plan, scenarios, search.times());
-            self.sets.lock().unwrap_or_else(PoisonError::into_inner).insert(shape, set);
+            self.note(plan, search.times());
+            self.sets.lock().unwrap_or_else(PoisonError::into_inner).insert(shape, next);
         }
         let front =
             LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, draws: None, scenarios, took: start.elapsed() };
@@ -263,11 +266,13 @@ impl Live {
     }
 
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-    fn note(&self, plan: &Plan, scenarios: u64, times: SearchTimes) {
-        let of_thread = self.threads as f64 / (plan.designs() as f64 * scenarios as f64);
-        let swept = times.swept.map(|took| took.as_secs_f64() * of_thread);
+    fn note(&self, plan: &Plan, times: SearchTimes) {
+        let of_thread = |scenarios: u64| self.threads as f64 / (plan.designs() as f64 * scenarios as f64);
+        let swept = times.swept.map(|(took, scenarios)| took.as_secs_f64() * of_thread(scenarios));
         self.change_pace(|pace| {
-            pace.swept = swept.or(pace.swept);
+            // A moment in which the machine has something else to do does not count in full.
+            let last = pace.swept;
+            pace.swept = swept.map(|now| last.map_or(now, |last| now.min((last * now).sqrt()))).or(last);
             pace.judged = times.judged.or(pace.judged);
         });
     }

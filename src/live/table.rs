@@ -6,11 +6,12 @@
 use super::search::WorkingSet;
 use crate::certify::{Column, margin_columns};
 use crate::masks::{count, keep_between, keep_finite};
+use crate::models::Worse;
 use crate::parallel::on_threads;
 use crate::plan::{Plan, Tracked};
 use crate::reduce::{Points, Reduction};
 use crate::screen::{BLOCK, Block, CpuEngine, Tables};
-use crate::study::{Constraint, Study};
+use crate::study::{Constraint, OverScenarios, Study};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -31,6 +32,15 @@ pub struct WorstTable {
     coarse: Arc<Vec<TablePart>>,
     /// Of all other rows, once they are asked for.
     rest: Option<Vec<TablePart>>,
+}
+
+/// What a front has beside the designs of a table.
+#[derive(Debug, Default)]
+pub struct TableBeside<'a> {
+    /// The front of other designs, or of designs with other values.
+    pub points: Points,
+    /// Designs of the table that are left out.
+    pub without: Option<&'a FxHashSet<u64>>,
 }
 
 /// Those of some rows of the sweep.
@@ -59,7 +69,7 @@ pub fn is_kept(free: &Plan) -> bool {
 impl WorstTable {
     /// Judges every design of at most so many rows, which are spread over all, in some scenarios; `None` if it was stopped.
     pub fn begin(free: &Plan, tables: &Tables, set: &WorkingSet, rows: u64, threads: usize, stop: &AtomicBool) -> Option<Self> {
-        let coarse = Arc::new(judge(free, tables, set, &free.slow.coarse(rows.max(1)), threads, stop)?);
+        let coarse = Arc::new(judge(free, tables, set, &shares(&free.slow.coarse(rows.max(1)), threads), threads, stop, |_, new| new)?);
         Some(Self { hash: free.study.hash(), followed: followed(free), set: set.clone(), coarse, rest: None })
     }
 
@@ -67,9 +77,42 @@ impl WorstTable {
     pub fn finish(&self, free: &Plan, tables: &Tables, threads: usize, stop: &AtomicBool) -> Option<Self> {
         let known: FxHashSet<u64> = self.coarse.iter().flat_map(|part| part.rows.iter().copied()).collect();
         let rows: Vec<u64> = (0..free.slow.count()).filter(|row| !known.contains(row)).collect();
-        let rest = Some(judge(free, tables, &self.set, &rows, threads, stop)?);
+        let rest = Some(judge(free, tables, &self.set, &shares(&rows, threads), threads, stop, |_, new| new)?);
         let (hash, followed, set) = (self.hash.clone(), self.followed.clone(), self.set.clone());
         Some(Self { hash, followed, set, coarse: Arc::clone(&self.coarse), rest })
+    }
+
+    /// The scenarios that a larger working set has beyond this table's, if that is all that it lacks.
+    pub fn lacks(&self, free: &Plan, set: &WorkingSet) -> Option<WorkingSet> {
+        let is_worst = |(it, _): &(Tracked, _)| it.over == OverScenarios::Worst;
+        let new = set.beyond(&self.set).filter(|new| *new != WorkingSet::default())?;
+        (free.tracked.iter().all(is_worst) && self.serves(free, &self.set)).then_some(new)
+    }
+
+    /// The same with more scenarios: only these are judged, and of both values the worse one counts. `None` if it was stopped.
+    pub fn joined_by(&self, free: &Plan, tables: &Tables, new: &WorkingSet, threads: usize, stop: &AtomicBool) -> Option<Self> {
+        let joined = |parts: &[TablePart]| {
+            let rows: Vec<&[u64]> = parts.iter().map(|part| part.rows.as_slice()).collect();
+            judge(free, tables, new, &rows, threads, stop, |number, new| worse(free, &parts[number].columns, new))
+        };
+        let coarse = Arc::new(joined(&self.coarse)?);
+        let rest = match &self.rest {
+            Some(rest) => Some(joined(rest)?),
+            None => None,
+        };
+        Some(Self { hash: self.hash.clone(), followed: self.followed.clone(), set: self.set.joined_by(new), coarse, rest })
+    }
+
+    /// The rows with the bits of their values, in order.
+    #[cfg(test)]
+    pub fn values(&self, width: usize) -> Vec<(u64, Vec<u64>)> {
+        let parts = self.coarse.iter().chain(self.rest.iter().flatten());
+        let of_row = |part: &TablePart, at: usize| {
+            part.columns.iter().flat_map(|column| column[at * width..][..width].iter().map(|it| it.to_bits())).collect()
+        };
+        let mut rows: Vec<_> = parts.flat_map(|part| (0..part.rows.len()).map(|at| (part.rows[at], of_row(part, at)))).collect();
+        rows.sort_unstable();
+        rows
     }
 
     /// Are all designs in it?
@@ -87,27 +130,61 @@ impl WorstTable {
         self.set == *set && self.followed == followed(free) && self.hash == free.study.hash()
     }
 
+    /// The front of all designs in it that keep the bounds, but for some that count with other values; `None` if it was stopped.
+    pub fn front_beside(&self, beside: TableBeside<'_>, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+        let parts: Vec<&TablePart> = self.coarse.iter().chain(self.rest.iter().flatten()).collect();
+        front(&parts, &beside, free, study, threads, stop)
+    }
+
     /// The front of the coarse grid's designs that keep the bounds of a study; `None` if it was stopped.
     pub fn coarse_front(&self, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
-        front(&self.coarse, Points::default(), free, study, threads, stop)
+        let parts: Vec<&TablePart> = self.coarse.iter().collect();
+        front(&parts, &TableBeside::default(), free, study, threads, stop)
     }
 
     /// The front of all designs in it that keep the bounds, where that of the coarse grid is known; `None` if it was stopped.
     pub fn front(&self, coarse: Points, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
-        front(self.rest.as_deref().unwrap_or_default(), coarse, free, study, threads, stop)
+        let parts: Vec<&TablePart> = self.rest.iter().flatten().collect();
+        front(&parts, &TableBeside { points: coarse, without: None }, free, study, threads, stop)
     }
 }
 
-/// Judges every design of some rows.
-fn judge(free: &Plan, tables: &Tables, set: &WorkingSet, rows: &[u64], threads: usize, stop: &AtomicBool) -> Option<Vec<TablePart>> {
-    let shares: Vec<&[u64]> = rows.chunks(rows.len().div_ceil(PARTS * threads).max(1)).collect();
+/// Rows cut into parts for so many threads.
+fn shares(rows: &[u64], threads: usize) -> Vec<&[u64]> {
+    rows.chunks(rows.len().div_ceil(PARTS * threads).max(1)).collect()
+}
+
+/// The worse of two values each; none where either is missing.
+fn worse(free: &Plan, known: &[Vec<f64>], mut new: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    for (((tracked, _), known), new) in free.tracked.iter().zip(known).zip(&mut new) {
+        let both = known.iter().zip(new);
+        match tracked.worse {
+            Worse::Lower => both.for_each(|(&known, new)| *new = if known < *new || known.is_nan() { known } else { *new }),
+            Worse::Higher => both.for_each(|(&known, new)| *new = if known > *new || known.is_nan() { known } else { *new }),
+        }
+    }
+    new
+}
+
+/// Judges every design of some rows, share by share; `keep` makes of a share's number and values what is kept.
+fn judge(
+    free: &Plan,
+    tables: &Tables,
+    set: &WorkingSet,
+    shares: &[&[u64]],
+    threads: usize,
+    stop: &AtomicBool,
+    keep: impl Fn(usize, Vec<Vec<f64>>) -> Vec<Vec<f64>> + Sync,
+) -> Option<Vec<TablePart>> {
     let width = free.fast.count();
     let (places, chosen) = ((0..width).collect::<Vec<u64>>(), set.chosen(free));
     let next = AtomicUsize::new(0);
     let parts = on_threads(0..threads, |_| {
         let mut engine = CpuEngine::new(free, tables).stopping_on(stop);
         let mut own = Vec::new();
-        while let Some(rows) = shares.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(rows) = shares.get(number).filter(|_| !stop.load(Ordering::Relaxed)) else { break };
             let size = usize::try_from(rows.len() as u64 * width).expect("it is held in memory");
             let mut columns = vec![vec![f64::NAN; size]; free.tracked.len()];
             engine.screen_rows(rows, &places, &chosen, |block| {
@@ -119,21 +196,21 @@ fn judge(free: &Plan, tables: &Tables, set: &WorkingSet, rows: &[u64], threads: 
                     room.iter_mut().zip(values).for_each(|(to, (&value, &alive))| *to = if alive == 0 { f64::NAN } else { value });
                 }
             });
-            own.push(TablePart { rows: rows.to_vec(), columns });
+            own.push(TablePart { rows: rows.to_vec(), columns: keep(number, columns) });
         }
         own
     });
     (!stop.load(Ordering::Relaxed)).then(|| parts.into_iter().flatten().collect())
 }
 
-/// The front of the designs of some parts that keep the bounds of a study, and of points that are known.
-fn front(parts: &[TablePart], known: Points, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+/// The front of the designs of some parts that keep the bounds of a study, and of what is beside them.
+fn front(parts: &[&TablePart], beside: &TableBeside<'_>, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
     let reduction = Reduction::of_front(free);
     let bounds = bounds(free, study);
     let offsets: Vec<u64> = (0..free.fast.count()).map(|place| free.fast.source_index(place)).collect();
     let next = AtomicUsize::new(0);
     let found = on_threads(0..threads, |_| {
-        let mut own = reduction.start_after(known.clone());
+        let mut own = reduction.start_after(beside.points.clone());
         let mut alive = Vec::new();
         let mut values = vec![Vec::new(); free.tracked.len()];
         while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
@@ -148,6 +225,10 @@ fn front(parts: &[TablePart], known: Points, free: &Plan, study: &Study, threads
                     keep_finite(&mut alive, &part.columns[0][lanes.clone()]);
                     for &(column, low, high) in &bounds {
                         keep_between(&mut alive, &part.columns[column][lanes.clone()], low, high);
+                    }
+                    if let Some(without) = beside.without {
+                        let of_design = alive.iter_mut().zip(offsets).filter(|(alive, _)| **alive != 0);
+                        of_design.for_each(|(alive, offset)| *alive *= u64::from(!without.contains(&(row_index + offset))));
                     }
                     let feasible_count = count(&alive);
                     if feasible_count == 0 {

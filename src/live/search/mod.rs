@@ -3,8 +3,9 @@
 //! Most designs fail, or are beaten, in the few scenarios that are the worst for the best designs. So every design is judged in a working
 //! set of scenarios only, and the front of that is computed by the f64 reference in all scenarios. A value over fewer scenarios is never
 //! worse than over all. So where the designs of that front are feasible, with the same values, in all scenarios, no other design can be on
-//! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, the
-//! scenarios that say so join the working set, and the search goes on.
+//! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, it
+//! counts with its values in all scenarios from then on, and the search goes on; after a few times the scenarios that say so join the
+//! working set.
 
 mod judging;
 mod working_set;
@@ -13,15 +14,15 @@ pub use working_set::WorkingSet;
 
 use super::followed::{followed, places_of, without_bounds};
 use super::lanes::ScenarioLanes;
-use super::table::{WorstTable, free_plan, is_kept};
+use super::table::{TableBeside, WorstTable, free_plan, is_kept};
 use crate::certify::{self, Column, Row};
 use crate::error::{Error, Result};
 use crate::keys::KeyRule;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Points, Reduction};
-use crate::screen::{Control, CpuEngine, Tables};
-use rustc_hash::FxHashMap;
+use crate::screen::{BLOCK, Block, Control, CpuEngine, Tables};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -38,6 +39,8 @@ const COARSER: u64 = 32;
 const COARSE_SHARE: u64 = 8;
 /// Most designs that are kept for the next study.
 const MOST_KEPT: usize = 100_000;
+/// How often designs that turn out to be worse are left to themselves before their scenarios join the working set.
+const ROUNDS: usize = 3;
 /// Parts that the designs are cut into, per thread.
 const PARTS: usize = 24;
 
@@ -75,8 +78,8 @@ pub struct FrontSearch<'p> {
 /// How long a search took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SearchTimes {
-    /// The last look at every design, unless an older table served.
-    pub swept: Option<Duration>,
+    /// The last look at every design, unless an older table served, and in how many scenarios.
+    pub swept: Option<(Duration, u64)>,
     /// Seconds for one design of the front in one scenario, if enough were judged.
     pub judged: Option<f64>,
 }
@@ -95,6 +98,26 @@ impl JudgedRows {
     /// Is there nothing that serves?
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
+    }
+}
+
+/// Designs that were judged in all scenarios while the front was looked for. Some of them are worse there than in the working set. Values
+/// only get worse with more scenarios, so what the others beat is beaten for good; what these beat may come back.
+#[derive(Debug, Default)]
+struct JudgedMeanwhile {
+    /// How often some of a front have turned out to be worse.
+    rounds: usize,
+    designs: FxHashSet<u64>,
+    /// Those that are feasible.
+    rows: Vec<Row>,
+}
+
+impl JudgedMeanwhile {
+    /// Takes in the designs of a front, of which these are feasible in all scenarios.
+    fn take(&mut self, designs: &[u64], feasible: Vec<Row>) {
+        self.rounds += 1;
+        self.rows.extend(feasible.into_iter().filter(|row| !self.designs.contains(&row.index)));
+        self.designs.extend(designs);
     }
 }
 
@@ -171,6 +194,12 @@ impl<'p> FrontSearch<'p> {
         self.free.as_ref().is_some_and(|(free, _)| self.table.as_ref().is_some_and(|it| it.is_whole() && it.serves(free, set)))
     }
 
+    /// The number of scenarios of a working set in which designs must still be judged, every design being known in the others.
+    pub fn lacks(&self, set: &WorkingSet) -> Option<u64> {
+        let ((free, _), table) = (self.free.as_ref()?, self.table.as_ref().filter(|it| it.is_whole())?);
+        if table.serves(free, set) { Some(0) } else { table.lacks(free, set).map(|new| new.count(self.plan.scenarios())) }
+    }
+
     /// The plan.
     pub fn plan(&self) -> &'p Plan {
         self.plan
@@ -223,7 +252,9 @@ impl<'p> FrontSearch<'p> {
         let Some((free, tables)) = &self.free else { return Ok((Points::default(), 0)) };
         let stop = &self.control.stop;
         let start = Instant::now();
-        if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
+        if let Some((table, new)) = self.table.as_ref().and_then(|it| Some((it, it.lacks(free, set)?))) {
+            self.table = table.joined_by(free, tables, &new, self.threads, stop).map(Arc::new);
+        } else if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
             let rows = rows.min(free.slow.count().div_ceil(COARSE_SHARE));
             self.table = WorstTable::begin(free, tables, set, rows, self.threads, stop).map(Arc::new);
         }
@@ -235,9 +266,9 @@ impl<'p> FrontSearch<'p> {
         Ok((points, designs))
     }
 
-    /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where some of it, of which
-    /// it is told the number, must still be judged in all scenarios. Its values are those of the engine over all scenarios, of which it
-    /// is not known which is the worst.
+    /// The exact front, the working set that has served to find it, and the one that may serve the next study better. `few` is told the front
+    /// in the working set where some of it, of which it is told the number, must still be judged in all scenarios. Its values are those of
+    /// the engine over all scenarios, of which it is not known which is the worst.
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
@@ -245,14 +276,17 @@ impl<'p> FrontSearch<'p> {
         &mut self,
         mut set: WorkingSet,
         few: &mut dyn FnMut(&Self, &WorkingSet, &Points, u64) -> Result<()>,
-    ) -> Result<(Vec<Row>, WorkingSet)> {
+    ) -> Result<(Vec<Row>, WorkingSet, WorkingSet)> {
         let rows: Vec<u64> = (0..self.plan.slow.count()).collect();
         let places: Vec<u64> = (0..self.plan.fast.count()).collect();
         let of = self.plan.scenarios();
+        let mut next = set.clone();
+        let mut meanwhile = JudgedMeanwhile::default();
         loop {
             let start = Instant::now();
-            let is_known = self.knows_all_in(&set);
-            let points = match self.front_by_table(&set)? {
+            // The time of a few scenarios says nothing of all.
+            let is_known = self.lacks(&set).is_some();
+            let points = match self.front_by_table(&set, &meanwhile)? {
                 Some(points) => points,
                 None => {
                     // What a few designs leave nothing of need not be kept until the end.
@@ -261,9 +295,12 @@ impl<'p> FrontSearch<'p> {
                 }
             };
             let begun = self.begun.take().map_or(Duration::ZERO, |(.., took)| took);
-            self.times.swept = (!is_known).then(|| begun + start.elapsed());
+            if !is_known {
+                self.times.swept = Some((begun + start.elapsed(), set.count(of)));
+            }
             let missing = points.indices.iter().filter(|&&design| self.judged_row(design).is_none()).count();
-            if missing > 0 {
+            // Later some have their true values, which few scenarios do not tell.
+            if missing > 0 && meanwhile.rounds == 0 {
                 few(self, &set, &points, missing as u64)?;
             }
             let mut front = self.judge_in_all(&points.indices)?;
@@ -271,7 +308,7 @@ impl<'p> FrontSearch<'p> {
             let wrong = self.contradicted(&points, &front);
             if wrong.is_empty() {
                 certify::sort_front(self.plan, &self.columns, &mut front);
-                return Ok((front, set));
+                return Ok((front, set, next));
             }
             if set.is_all() {
                 let problem = format!("{} designs of the front have other values when they are judged alone", wrong.len());
@@ -280,16 +317,30 @@ impl<'p> FrontSearch<'p> {
             // A few of them say which scenarios are missing.
             let step = wrong.len().div_ceil(MOST_ASKED);
             let some: Vec<u64> = wrong.into_iter().step_by(step).collect();
-            if !set.take(&self.asked_by(&some)?, of) {
-                set = WorkingSet::all();
+            let is_new = next.take(&self.asked_by(&some)?, of);
+            if self.knows_all_in(&set) && meanwhile.rounds < ROUNDS {
+                meanwhile.take(&points.indices, front);
+                continue;
             }
+            if !is_new && next == set {
+                next = WorkingSet::all();
+            }
+            (set, meanwhile) = (next.clone(), JudgedMeanwhile::default());
         }
     }
 
-    /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large.
-    fn front_by_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
+    /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large. Designs that
+    /// were judged in all scenarios meanwhile count with what these say.
+    fn front_by_table(&mut self, set: &WorkingSet, meanwhile: &JudgedMeanwhile) -> Result<Option<Points>> {
         if self.free.is_none() {
             return Ok(None);
+        }
+        if let (Some((free, _)), Some(table), true) = (&self.free, &self.table, meanwhile.rounds > 0) {
+            let known = self.front_of(free, &meanwhile.rows);
+            let beside = TableBeside { points: known, without: Some(&meanwhile.designs) };
+            let points = table.front_beside(beside, free, &self.plan.study, self.threads, &self.control.stop);
+            self.go_on()?;
+            return Ok(points);
         }
         if !self.begun.as_ref().is_some_and(|it| it.0 == *set) {
             self.begin_table(set, u64::MAX)?;
@@ -302,6 +353,27 @@ impl<'p> FrontSearch<'p> {
         let points = self.table.as_ref().and_then(|it| it.front(coarse.clone(), free, &self.plan.study, self.threads, stop));
         self.go_on()?;
         Ok(points)
+    }
+
+    /// The front of some designs with the values that they have here.
+    fn front_of(&self, free: &Plan, rows: &[Row]) -> Points {
+        let reduction = Reduction::of_front(free);
+        let places = certify::objective_columns(&self.plan.study, &self.columns);
+        let mut reducers = reduction.start();
+        let mut values = vec![Vec::new(); free.tracked.len()];
+        for rows in rows.chunks(BLOCK) {
+            for (&column, &place) in free.objectives.iter().zip(&places) {
+                values[column] = rows.iter().map(|row| row.columns[place].value.unwrap_or(f64::NAN)).collect();
+            }
+            let offsets: Vec<u64> = rows.iter().map(|row| row.index).collect();
+            let alive = vec![u64::MAX; rows.len()];
+            let feasible_count = rows.len() as u64;
+            reduction.absorb_objectives(
+                &mut reducers,
+                &Block { row_index: 0, offsets: &offsets, feasible_count, alive: &alive, values: &values },
+            );
+        }
+        reduction.front_together(vec![reducers])
     }
 
     fn go_on(&self) -> Result<()> {

@@ -46,8 +46,25 @@ impl WorkingSet {
         chosen
     }
 
+    /// What it has beyond a smaller one; `None` if it lacks some of that, or either is all scenarios.
+    pub(in crate::live) fn beyond(&self, smaller: &Self) -> Option<Self> {
+        let has_all = smaller.scenarios.iter().all(|it| self.scenarios.binary_search(it).is_ok());
+        let scenarios = || self.scenarios.iter().copied().filter(|it| smaller.scenarios.binary_search(it).is_err()).collect();
+        (has_all && !self.is_all && !smaller.is_all).then(|| Self { scenarios: scenarios(), is_all: false })
+    }
+
+    /// Together with others.
+    pub(in crate::live) fn joined_by(&self, others: &Self) -> Self {
+        let mut scenarios = [&self.scenarios[..], &others.scenarios].concat();
+        scenarios.sort_unstable();
+        Self { scenarios, is_all: false }
+    }
+
     /// Takes scenarios in; those that are asked for most often, if there are many. Tells whether there was a new one.
     pub(super) fn take(&mut self, asked: &BTreeMap<u64, usize>, of: u64) -> bool {
+        if self.is_all {
+            return false;
+        }
         let mut new: Vec<_> = asked.iter().filter(|(scenario, _)| !self.scenarios.contains(scenario)).collect();
         new.sort_by_key(|&(&scenario, &count)| (std::cmp::Reverse(count), scenario));
         self.scenarios.extend(new.iter().take(MOST_NEW).map(|(scenario, _)| **scenario));
@@ -138,4 +155,19 @@ fn coarse_scenarios(plan: &Plan) -> impl Iterator<Item = u64> {
     let slow = plan.slow_scenarios.coarse((MOST_NEW / fast.len()) as u64);
     let number = |slow: u64, fast: u64| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast);
     slow.into_iter().flat_map(move |slow| fast.clone().into_iter().map(move |fast| number(slow, fast)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_of_too_many_scenarios_is_all_of_them_and_stays_so() {
+        let asked = |scenarios: std::ops::Range<u64>| -> BTreeMap<u64, usize> { scenarios.map(|it| (it, 1)).collect() };
+        let mut set = WorkingSet::default();
+        assert!(set.take(&asked(0..24), 104) && set.count(104) == 24 && !set.is_all());
+        assert!(!set.take(&asked(3..9), 104) && set.count(104) == 24);
+        assert!(set.take(&asked(20..32), 104) && set == WorkingSet::all());
+        assert!(!set.take(&asked(40..45), 104) && set == WorkingSet::all());
+    }
 }

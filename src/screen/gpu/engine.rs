@@ -220,10 +220,11 @@ impl<'p> GpuEngine<'p> {
         supports_histograms(plan, ranges)?;
         let source = wrong.text(kernel_text(plan, &layout, ranges, device.has_f64(), &wrong.perturb));
         let program = if wrong.keeps_text() {
-            // SAFETY: the text is ours but for formulas, which are recorded as numbers and have neither index nor loop of their own. Each
-            // index is compared with its array's length, or cut to it, or comes from a buffer that this engine has filled, and buffers
-            // that a group of lanes may read beyond its last lane are longer by a group. Loops count up to a constant or to a number of
-            // lanes, rows or runs. Integers are divided by constants, and by a number of groups, of which there is at least one.
+            // SAFETY: the text is ours; what a study adds are formulas of numbers, without an index or a loop that ours do not have. Each
+            // index is compared with the length of its array, or cut to it, or comes from a buffer that only this engine and its kernel
+            // write, with what is below that length. Where a group of lanes reads beyond the last lane, its buffer is longer by a group
+            // less one. Loops count up or down between numbers that are known when they begin, halve a range, or clear bits. Integers are
+            // divided by constants that are not zero, and by a number of groups, of which there is at least one.
             #[allow(unsafe_code, reason = "wgpu has no other way to leave its checks out")]
             unsafe {
                 Program::without_checks(device, &source, &entries(&layout))?

@@ -223,7 +223,7 @@ mod tests {
             let points: Vec<&[f32]> = front.iter().map(Vec::as_slice).collect();
             let (place, cells) = table(&points, bins, dimensions as usize);
             let beaten = |point: &[f32]| {
-                let bin = |d: usize| ((point[d] - place[2 * d]) * place[2 * d + 1]).clamp(0.0, (bins - 1) as f32) as usize;
+                let bin = |d: usize| (((point[d] - place[2 * d]) * place[2 * d + 1]) as usize).min(bins - 1);
                 let cell = (0..dimensions as usize - 1).fold(0, |cell, d| cell * bins + bin(d));
                 cells[cell] < point[dimensions as usize - 1]
             };

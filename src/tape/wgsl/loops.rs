@@ -14,6 +14,7 @@ impl Writer<'_> {
             Rolled::Get(table, place) => self.entry(table, &index(place)),
             Rolled::GetAt(table, at) => {
                 let at = self.operand(at, Arithmetic::Bounded);
+                // The place of a tooth that a loop over the table has found; what is less than zero becomes zero.
                 let entry = self.entry(table, &format!("whole({at})"));
                 format!("if_known({at}.bound == 0.0, {entry})")
             }

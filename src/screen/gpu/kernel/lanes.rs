@@ -16,7 +16,7 @@ impl Prelude<'_> {
         let mut of_lane = vec!["var digits: Digits;".to_owned()];
         let mut index = vec!["let digits = digits_of_lane(lane);".to_owned(), "var index = vec2<u32>(0u, 0u);".to_owned()];
         for (number, it) in fast.iter().enumerate() {
-            // Beyond the last lane the outermost digit runs on; nothing reads it.
+            // Beyond the last lane the outermost digit begins again; nothing reads what comes of it.
             of_lane.push(format!("digits.d{number} = lane / {}u % {}u;", it.lane_stride, it.count));
             index.push(format!(
                 "index = wide_add(index, wide_mul(digits.d{number}, vec2<u32>({}u, {}u)));",
