@@ -189,12 +189,8 @@ impl<'p> FrontSearch<'p> {
         self.times
     }
 
-    /// Is every design known in a working set, as in the last study that differed in nothing but bounds?
-    pub fn knows_all_in(&self, set: &WorkingSet) -> bool {
-        self.free.as_ref().is_some_and(|(free, _)| self.table.as_ref().is_some_and(|it| it.is_whole() && it.serves(free, set)))
-    }
-
-    /// The number of scenarios of a working set in which designs must still be judged, every design being known in the others.
+    /// In how many scenarios of a working set designs must still be judged, where every design is known in the others: in none if the last
+    /// study differed in nothing but bounds.
     pub fn lacks(&self, set: &WorkingSet) -> Option<u64> {
         let ((free, _), table) = (self.free.as_ref()?, self.table.as_ref().filter(|it| it.is_whole())?);
         if table.serves(free, set) { Some(0) } else { table.lacks(free, set).map(|new| new.count(self.plan.scenarios())) }
@@ -318,7 +314,7 @@ impl<'p> FrontSearch<'p> {
             let step = wrong.len().div_ceil(MOST_ASKED);
             let some: Vec<u64> = wrong.into_iter().step_by(step).collect();
             let is_new = next.take(&self.asked_by(&some)?, of);
-            if self.knows_all_in(&set) && meanwhile.rounds < ROUNDS {
+            if self.lacks(&set) == Some(0) && meanwhile.rounds < ROUNDS {
                 meanwhile.take(&points.indices, front);
                 continue;
             }
