@@ -88,8 +88,7 @@ impl Program {
         Self::made(device, source, entries, |text| device.device.create_shader_module(text))
     }
 
-    /// The same, on a driver that has passed its self-test without the checks of indices, loops and divisions that wgpu adds and every
-    /// invocation pays for.
+    /// The same. Where the driver has passed the self-test, kernels do without the checks of indices, loops and divisions that wgpu adds.
     ///
     /// # Safety
     /// With what the buffers hold when it is dispatched, every index is below the length of its array, every loop ends, and no integer is

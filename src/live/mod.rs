@@ -36,7 +36,7 @@ use toml::de::{DeTable, DeValue};
 pub const NOTICED: Duration = Duration::from_millis(50);
 /// How many times as long a design of a coarser grid takes, as long as nothing else is known.
 const SLOWNESS: f64 = 3.0;
-/// Where designs must still be judged in one of so many scenarios, or in none, the exact front comes soon.
+/// Where all designs must still be judged in at most one of so many scenarios, the exact front comes soon.
 const FEW_NEW: u64 = 4;
 /// What takes every design waits this long, for somebody who drags a slider on.
 const PAUSE: Duration = Duration::from_millis(250);

@@ -39,7 +39,7 @@ const COARSER: u64 = 32;
 const COARSE_SHARE: u64 = 8;
 /// Most designs that are kept for the next study.
 const MOST_KEPT: usize = 100_000;
-/// How often designs that turn out to be worse are left to themselves before their scenarios join the working set.
+/// How often the front is found again with the values that its designs have in all scenarios, before scenarios join the working set.
 const ROUNDS: usize = 3;
 /// Parts that the designs are cut into, per thread.
 const PARTS: usize = 24;
@@ -101,8 +101,8 @@ impl JudgedRows {
     }
 }
 
-/// Designs that were judged in all scenarios while the front was looked for. Some of them are worse there than in the working set. Values
-/// only get worse with more scenarios, so what the others beat is beaten for good; what these beat may come back.
+/// Designs that were judged in all scenarios while the front was looked for. Some of them have worse values there than in the working set:
+/// what only these had beaten may be on the front after all. What the others beat stays beaten, as more scenarios make no value better.
 #[derive(Debug, Default)]
 struct JudgedMeanwhile {
     /// How often some of a front have turned out to be worse.
@@ -295,7 +295,7 @@ impl<'p> FrontSearch<'p> {
                 self.times.swept = Some((begun + start.elapsed(), set.count(of)));
             }
             let missing = points.indices.iter().filter(|&&design| self.judged_row(design).is_none()).count();
-            // Later some have their true values, which few scenarios do not tell.
+            // From the second time on some designs count with their values in all scenarios; those in a few would show another front.
             if missing > 0 && meanwhile.rounds == 0 {
                 few(self, &set, &points, missing as u64)?;
             }
@@ -351,7 +351,7 @@ impl<'p> FrontSearch<'p> {
         Ok(points)
     }
 
-    /// The front of some designs with the values that they have here.
+    /// The front of some designs by the values in these rows.
     fn front_of(&self, free: &Plan, rows: &[Row]) -> Points {
         let reduction = Reduction::of_front(free);
         let places = certify::objective_columns(&self.plan.study, &self.columns);

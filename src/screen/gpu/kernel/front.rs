@@ -74,7 +74,7 @@ impl Prelude<'_> {
             let bins = bins(&self.coordinates);
             let bin = |number: usize| {
                 let [low, scale] = [["x", "y"], ["z", "w"]][number];
-                // The whole number is cut, and not what it is made from: that may be undefined.
+                // The limit is on the whole number: of an undefined f32 a limit may be undefined too.
                 format!("min(u32((keys.k{number}.x - known.table.{low}) * known.table.{scale}), {}u)", bins - 1)
             };
             let last = objectives.len() - 1;
