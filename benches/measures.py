@@ -46,11 +46,13 @@ def sweep(program, levels, folder, engine="cpu"):
 
 
 def operations(program, levels, folder):
-    """Operations of the device's kernel, as it counts them in its text: for a run of designs, the designs of a run, for a design alone."""
+    """Operations of the device's kernel, as it counts them in its text: for a run of designs or a part of one, the designs of a run, those of
+    a part, for a design alone."""
     kernel = folder / f"metal-grid-{levels}.wgsl"
     subprocess.run([program, "sweep", folder / f"metal-grid-{levels}.toml", "--emit-shader", kernel], check=True, stdout=subprocess.DEVNULL)
     line = kernel.read_text().splitlines()[1]
-    return [int(number) for number in re.fullmatch(r".*: (\d+) for a run of up to (\d+) designs, (\d+) for a design that .*", line).groups()]
+    counts = re.fullmatch(r".*: (\d+) for a run of up to (\d+) designs and for a part of up to (\d+), (\d+) for a design that .*", line)
+    return [int(number) for number in counts.groups()]
 
 
 def front_of(out):
@@ -88,14 +90,16 @@ def on_device(program, levels, folder, expected=None):
                 sys.exit(f"{levels} levels: {file.name} differs between --engine gpu and --engine cpu")
     run = json.loads((out / "run.json").read_text())
     device = run["device"]
-    each, length, alone = operations(program, levels, folder)
+    each, length, part, alone = operations(program, levels, folder)
     # If only the arithmetic of the inner loops took time.
-    per_design = each / length + alone * device["judged_singly"] / device["designs"]
+    parts = device["runs_judged_in_parts"] * -(-length // part)
+    per_design = each / length + (each * parts + alone * device["judged_singly"]) / device["designs"]
     return {"designs": run["designs"], "seconds": seconds, "sweep_seconds": run["seconds"], "designs_per_second": run["designs"] / seconds,
             "peak_MB": peak, "adapter": device["adapter"], "driver": device["driver"], "tiles": device["tiles"],
             "unsure_designs": device["unsure_designs"], "survivors": device["survivors"],
             "survivors_per_tile": device["survivors"] / device["tiles"],
-            "operations_per_run": each, "designs_of_a_run": length, "operations_alone": alone, "judged_singly": device["judged_singly"],
+            "operations_per_run": each, "designs_of_a_run": length, "designs_of_a_part": part, "operations_alone": alone,
+            "runs_judged_in_parts": device["runs_judged_in_parts"], "judged_singly": device["judged_singly"],
             "operations_per_design": per_design, "share_of_floor": run["designs"] / run["seconds"] * per_design / ARITHMETIC}
 
 

@@ -26,7 +26,7 @@ fn closer_look(lane: Lane, horizon: Horizon, index: vec2<u32>, local: vec3<u32>)
     var why = 0u;
     if OBJECTIVES > 0u {
         let keys = keys_of(lane);
-        var beaten = beaten_by_dominators(keys, horizon) || beaten_by_table(keys) || beaten_by_front(keys);
+        var beaten = beaten_by_dominators(keys, horizon) || beaten_by_table(keys, horizon) || beaten_by_front(keys);
         if USES_ROW_DOMINATORS && !beaten {
             beaten = beaten_in_the_row(keys, local);
         }

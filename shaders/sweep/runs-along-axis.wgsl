@@ -13,7 +13,7 @@ struct Run {
 // Run number `number` of a row.
 fn run_of(row: u32, number: u32) -> Run {
     var run: Run;
-    run.row = min(row, tile.rows - 1u);
+    run.row = row;
     run.digits = digits_of_run(number);
     run.first_lane = lane_of(run.digits);
     // A tile that is part of a row begins and ends anywhere.
@@ -21,8 +21,7 @@ fn run_of(row: u32, number: u32) -> Run {
     let until = max(tile.last_lane, run.first_lane) - run.first_lane;
     run.first = (before + (RUN_STEP - 1u)) / RUN_STEP;
     run.last = min((until + (RUN_STEP - 1u)) / RUN_STEP, levels_of_run(run.digits));
-    let is_there = row < tile.rows && number < RUNS;
-    run.last = select(0u, run.last, is_there);
+    run.last = select(0u, run.last, number < RUNS);
     return run;
 }
 
@@ -31,8 +30,13 @@ fn is_counted() -> bool {
     return true;
 }
 
-fn judge_run(run: Run, state: RowState, held: Prepared) -> Lane {
-    return judge_digits(run.row, state, held, run.digits);
+fn levels_of(run: Run) -> u32 {
+    return levels_of_run(run.digits);
+}
+
+// What the lanes from `begin` up to `end` have in common.
+fn judge_stretch(run: Run, state: RowState, held: Prepared, begin: u32, end: u32) -> Lane {
+    return judge_between(run.row, state, held, along(run.digits, begin), along(run.digits, end - 1u));
 }
 
 fn judge_in_run(run: Run, state: RowState, held: Prepared, at: u32) -> Group {
@@ -48,7 +52,8 @@ fn lane_at(state: RowState, first: u32, i: u32) -> u32 {
     return first + i * RUN_STEP;
 }
 
-// A bit for each lane of a block that the tile has.
-fn lanes_here(run: Run, state: RowState, begin: u32) -> u32 {
-    return select(0u, 0xffffffffu << (max(run.first, begin) - begin), run.first < begin + BLOCK);
+// A bit for each lane of a block, from `begin` up to `end`, that the tile has. A part of a run has one at least, a block need not.
+fn lanes_here(run: Run, state: RowState, begin: u32, end: u32) -> u32 {
+    let all = 0xffffffffu >> (32u - (end - begin));
+    return select(0u, all & (0xffffffffu << (max(run.first, begin) - begin)), run.first < end);
 }

@@ -12,11 +12,10 @@ struct Run {
 // Run number `number` of a row.
 fn run_of(row: u32, number: u32) -> Run {
     var run: Run;
-    run.row = min(row, tile.rows - 1u);
+    run.row = row;
     run.number = number;
     run.first = 0u;
-    let is_there = row < tile.rows && number < RUNS;
-    run.last = select(0u, min(RUN_LENGTH, WIDTH - number * RUN_LENGTH), is_there);
+    run.last = select(0u, min(RUN_LENGTH, WIDTH - number * RUN_LENGTH), number < RUNS);
     return run;
 }
 
@@ -32,9 +31,14 @@ fn stretch(a: Real, b: Real) -> Real {
     return Real(select(all.value, a.value, same), select(all.bound, a.bound, same));
 }
 
-fn judge_run(run: Run, state: RowState, held: Prepared) -> Lane {
+fn levels_of(run: Run) -> u32 {
+    return run.last;
+}
+
+// What the lanes from `begin` up to `end` have in common.
+fn judge_stretch(run: Run, state: RowState, held: Prepared, begin: u32, end: u32) -> Lane {
     var digits: Digits;
-    return judge_onwards(run.row, state, numbers_of_run(held, state, run.number), digits);
+    return judge_onwards(run.row, state, numbers_between(held, state, first_of(run, begin), first_of(run, end) - 1u), digits);
 }
 
 fn judge_in_run(run: Run, state: RowState, held: Prepared, at: u32) -> Group {
@@ -68,13 +72,13 @@ fn lane_at(state: RowState, first: u32, i: u32) -> u32 {
     return sorted_lane(state, first + i);
 }
 
-// A bit for each lane of a block that the tile has.
-fn lanes_here(run: Run, state: RowState, begin: u32) -> u32 {
+// A bit for each lane of a block, from `begin` up to `end`, that the tile has.
+fn lanes_here(run: Run, state: RowState, begin: u32, end: u32) -> u32 {
     if is_counted() {
-        return 0xffffffffu;
+        return 0xffffffffu >> (32u - (end - begin));
     }
     var here = 0u;
-    for (var i = 0u; i < BLOCK && begin + i < run.last; i++) {
+    for (var i = 0u; i < end - begin; i++) {
         let lane = lane_at(state, first_of(run, begin), i);
         here |= select(0u, 1u << i, lane >= tile.first_lane && lane < tile.last_lane);
     }

@@ -14,7 +14,7 @@ struct Tile {
     index: vec2<u32>,
     // First level of the outermost dimension's window.
     window: u32,
-    // Room for open runs behind the rows.
+    // Room for open runs behind the rows, and for open parts behind these.
     open_room: u32,
     // Position of the first row along each slow dimension; of the outermost one within its window of levels.
     digits: array<vec4<u32>, DIGIT_VECTORS>,
@@ -43,10 +43,10 @@ struct KnownUniform {
 // Levels of the slow design axes: value in SI and what f32 loses of it, value in its unit, 1 if constraints on inputs allow it.
 @group(0) @binding(3) var<storage, read> levels: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> prepared_table: array<Real>;
-// What lanes of a row share, and behind all rows the open runs.
+// What lanes of a row share, and behind all rows the open runs and their open parts.
 @group(0) @binding(5) var<storage, read_write> row_table: array<u32>;
-// SURE feasible designs, UNDECIDED ones, those APPENDED to the survivors, OPEN runs, designs judged SINGLY, GROUPS of the second pass; then
-// histograms; then feasible designs per map cell.
+// SURE feasible designs, UNDECIDED ones, those APPENDED to the survivors, OPEN runs, OPEN_PARTS, designs judged SINGLY, GROUPS of the second
+// and the third pass; then histograms; then feasible designs per map cell.
 @group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> survivors: array<u32>;
 @group(0) @binding(8) var<storage, read> dominator_table: array<f32>;

@@ -192,12 +192,18 @@ impl Program {
         self.pass(encoder, entry, bound).dispatch_workgroups(groups[0], groups[1], 1);
     }
 
-    /// The same over as many workgroups as the first three words of a buffer say by then.
+    /// The same over as many workgroups as three words of a buffer, from that byte on, say by then.
     ///
     /// # Panics
     /// If the entry point was not compiled.
-    pub(crate) fn dispatch_counted(&self, encoder: &mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup, groups: &Buffer) {
-        self.pass(encoder, entry, bound).dispatch_workgroups_indirect(groups, 0);
+    pub(crate) fn dispatch_counted(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        entry: &str,
+        bound: &wgpu::BindGroup,
+        groups: (&Buffer, u64),
+    ) {
+        self.pass(encoder, entry, bound).dispatch_workgroups_indirect(groups.0, groups.1);
     }
 
     fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup) -> wgpu::ComputePass<'e> {

@@ -44,7 +44,8 @@ impl DeviceRecord {
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "designs": self.designs, "unsure_designs": self.unsure, "survivors": self.survivors,
-            "judged_singly": self.singly, "survivors_evaluated_in_f64": self.evaluated, "tiles": self.tiles, "repeated_tiles": self.repeated,
+            "runs_judged_in_parts": self.open_runs, "judged_singly": self.singly, "survivors_evaluated_in_f64": self.evaluated,
+            "tiles": self.tiles, "repeated_tiles": self.repeated,
             "seconds_waiting": self.waiting.as_secs_f64(), "compared_with_f64": self.recheck.to_json(),
         })
     }
@@ -57,7 +58,9 @@ pub struct DeviceRecord {
     pub designs: u64,
     /// Of these, designs that were unsure, and that f64 decided.
     pub unsure: u64,
-    /// Designs that were judged singly: no run of neighbours settled them.
+    /// Runs of neighbours that were judged in parts: as a whole they were not settled.
+    pub open_runs: u64,
+    /// Designs that were judged singly: neither a run of neighbours nor its part settled them.
     pub singly: u64,
     /// Designs that came back for f64, the unsure ones among them.
     pub survivors: u64,
@@ -255,9 +258,10 @@ impl Run<'_, '_> {
 
     /// Adds what the device counted, and decides in f64 what it could not.
     fn take_in(&mut self, work: &mut SweepWork<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
-        let TileCounts { sure, unsure, singly, reported } = counts;
+        let TileCounts { sure, unsure, open_runs, singly, reported } = counts;
         self.reduction.add_counts(&mut work.reducers, *sure, reported);
         self.record.unsure += unsure;
+        self.record.open_runs += open_runs;
         self.record.singly += singly;
         self.record.survivors += survivors.len() as u64;
         // The front has grown since the tile was started, and the tile has met the best of its cells: most of what survived is

@@ -25,14 +25,16 @@ shared_constants! {
     const UNDECIDED: u32 = 1;
     /// Word of the counts: survivors, those for which there was no room among them.
     const APPENDED: u32 = 2;
-    /// Word of the counts: runs whose lanes must be judged singly, those for which there was no room in their list.
+    /// Word of the counts: runs that must be judged in parts, those for which there was no room in their list.
     const OPEN: u32 = 3;
+    /// Word of the counts: parts of these whose lanes must be judged singly, those for which there was no room in their list.
+    const OPEN_PARTS: u32 = 4;
     /// Word of the counts: their lanes.
-    const SINGLY: u32 = 4;
-    /// Three words of the counts: the workgroups that judge these.
-    const GROUPS: u32 = 5;
+    const SINGLY: u32 = 5;
+    /// Six words of the counts: the workgroups that judge open runs, and those that judge open parts.
+    const GROUPS: u32 = 6;
     /// First word of the counts that reducers ask for.
-    const FIRST_REPORTED: u32 = 8;
+    const FIRST_REPORTED: u32 = 12;
     /// Most workgroups of a dispatch along either side.
     const MOST_GROUPS: u32 = 65_535;
     /// Why a design survives: f64 must decide whether it is feasible. The reasons are bits.

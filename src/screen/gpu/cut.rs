@@ -15,6 +15,8 @@ pub const MOST_GROUPS: u64 = MOST_GROUPS_U32 as u64;
 /// Lanes of a block: their answers are the bits of one word. Also most lanes of a run: the longer, the fewer runs there are, and the more of
 /// them are open.
 const BLOCK: u64 = 32;
+/// Lanes of a part of a run: the shorter, the more parts of an open run there are to judge, and the fewer lanes are judged singly then.
+const PART: u64 = 8;
 /// Lanes of one invocation where a design takes a single evaluation: what a row needs is then loaded rarely.
 const MANY_LANES: u64 = 256;
 /// Lanes that are judged together: where scenarios are many, what a row gives them is expensive to load; where there is one, registers are.
@@ -50,6 +52,8 @@ pub struct Runs {
     pub along: RunsAlong,
     /// Most lanes of a run.
     pub length: u64,
+    /// Most lanes of a part of an open run.
+    pub part: u64,
     /// Runs of a row.
     pub of_row: u64,
     /// Runs that an invocation of the first pass takes, all of one row.
@@ -122,14 +126,23 @@ impl Runs {
 
     fn cut(plan: &Plan, along: RunsAlong, length: u64, of_row: u64, cut: Cut, own: u64) -> Option<Self> {
         let (shared, alone) = Cut::iterations(plan, own, cut.keeps);
-        if length.div_ceil(cut.group) * shared + length * alone > MOST_ITERATIONS {
-            return None;
-        }
-        let each = (MOST_ITERATIONS / (shared + alone)).min(MOST_TURNS);
+        let part = if looks_at_all(plan) { length } else { PART.min(length) };
+        let each = (MOST_ITERATIONS / (shared + alone)).clamp(1, MOST_TURNS);
         // Of equal size, so that the last invocation of a row does not idle.
         let each = of_row.div_ceil(of_row.div_ceil(each));
-        let runs = Self { along, length, of_row, each };
-        (runs.chunks() <= MOST_GROUPS * u64::from(WORKGROUP)).then_some(runs)
+        let runs = Self { along, length, part, of_row, each };
+        let fits = runs.iterations_of_open(cut, (shared, alone)) <= MOST_ITERATIONS;
+        (fits && runs.chunks() <= MOST_GROUPS * u64::from(WORKGROUP)).then_some(runs)
+    }
+
+    /// Most loop iterations of an invocation that judges the parts of an open run, or the lanes of an open part.
+    fn iterations_of_open(self, cut: Cut, (shared, alone): (u64, u64)) -> u64 {
+        (self.parts() * (shared + alone)).max(self.part.div_ceil(cut.group) * shared + self.part * alone)
+    }
+
+    /// Most parts of a run.
+    pub fn parts(self) -> u64 {
+        self.length.div_ceil(self.part)
     }
 
     /// Invocations of the first pass that share a row.
@@ -208,6 +221,12 @@ impl Cut {
     }
 }
 
+/// Is every feasible design looked at, because only that tells its index? Where many are feasible, parts of a run would settle few more.
+pub fn looks_at_all(plan: &Plan) -> bool {
+    let report = &plan.study.report;
+    !report.maps.is_empty() || !report.histograms.is_empty() || report.sample.is_some() || report.feasible
+}
+
 /// Do neighbours in a row share an objective that only the row decides, while another one differs?
 pub fn row_dominators(plan: &Plan) -> bool {
     let sources: Vec<Source> = plan.objectives.iter().map(|&position| plan.tracked[position].1).collect();
@@ -249,7 +268,8 @@ mod tests {
                     // What one lane takes may pass the target by its closer look.
                     assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");
                     if let Some(runs) = layout.runs {
-                        for iterations in [runs.each * (shared + alone), runs.length.div_ceil(cut.group) * shared + runs.length * alone] {
+                        let of_open = runs.iterations_of_open(cut, (shared, alone));
+                        for iterations in [runs.each * (shared + alone), of_open] {
                             assert!(
                                 iterations <= MOST_ITERATIONS,
                                 "{model}, {scenarios} scenarios: {runs:?} takes {iterations} iterations"

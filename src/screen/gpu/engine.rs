@@ -2,10 +2,10 @@
 
 use super::constants::Level;
 use super::constants::{
-    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, GROUPS, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, OPEN,
+    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, GROUPS, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, OPEN, OPEN_PARTS,
     SCENARIO_PER_LANE, SCENARIO_PER_ROW, SINGLY, SURE, SURVIVOR_HEAD, UNDECIDED,
 };
-use super::cut::{Extras, MOST_GROUPS};
+use super::cut::{Extras, MOST_GROUPS, Runs};
 use super::held::histogram_beyond_f32;
 use super::held::refuse;
 use super::kernel::{self, Coordinate, check_words, coordinates, entries, survivor_words, text};
@@ -130,7 +130,9 @@ pub struct TileCounts {
     pub sure: u64,
     /// Designs that f64 must decide.
     pub unsure: u64,
-    /// Designs that were judged singly: no run that they are in settled them.
+    /// Runs that were judged in parts: as a whole they were not settled.
+    pub open_runs: u64,
+    /// Designs that were judged singly: neither the run that they are in nor its part settled them.
     pub singly: u64,
     /// What each reducer asks to be counted.
     pub reported: Vec<Vec<u32>>,
@@ -184,9 +186,9 @@ pub struct GpuEngine<'p> {
     levels: Buffer,
     zeros: Buffer,
     cells: Buffer,
-    /// Room for open runs.
+    /// Room for open runs, and for their open parts.
     open_room: u64,
-    /// The workgroups that judge open runs.
+    /// The workgroups that judge open runs, and those that judge open parts.
     groups: Buffer,
     /// What finds the scenarios that decide about a row, where rows are told, and where these stand.
     row_scenarios: Option<RowScenarios<'p>>,
@@ -267,9 +269,11 @@ impl<'p> GpuEngine<'p> {
         let steady: &[Level] = if layout.steady.is_empty() { &[[0.0; 4]] } else { &layout.steady };
         let steady = if layout.steady_is_uniform() { device.uniform("steady", steady) } else { device.storage("steady", steady) };
         let prepared = device.buffer("prepared", most_rows * layout.prepared_bytes(), storage);
-        let open_room = if layout.runs.is_some() { wrong.open_runs().min(binding / 4 - most_rows * row_words) } else { 0 };
-        let rows = device.buffer("rows", 4 * (most_rows * row_words + open_room), storage);
-        let groups = device.buffer("groups", 12, wgpu::BufferUsages::INDIRECT);
+        let open_room =
+            |runs: Runs| wrong.open_runs().min(most_rows * runs.of_row * runs.parts()).min((binding / 4 - most_rows * row_words) / 2);
+        let open_room = layout.runs.map_or(0, open_room);
+        let rows = device.buffer("rows", 4 * (most_rows * row_words + 2 * open_room), storage);
+        let groups = device.buffer("groups", 24, wgpu::BufferUsages::INDIRECT);
         let cells = device.buffer("cells", value_cells * 4, storage);
         let scenario_words = if row_scenarios.is_some() { RowScenarios::words(plan, most_rows) } else { 0 };
         let decisive = device.buffer("decisive", 4 * scenario_words, storage);
@@ -376,9 +380,12 @@ impl<'p> GpuEngine<'p> {
             self.first_stage(encoder, it, &rows);
             if self.layout.runs.is_some() {
                 self.program.dispatch(encoder, "judge_runs", &it.bound, groups);
-                self.program.dispatch(encoder, "count_groups", &it.bound, [1, 1]);
-                encoder.copy_buffer_to_buffer(&it.counts, u64::from(GROUPS) * 4, &self.groups, 0, 12);
-                self.program.dispatch_counted(encoder, "sweep", &it.bound, &self.groups);
+                for (pass, entry) in (0..).zip(["judge_parts", "sweep"]) {
+                    let at = 12 * pass;
+                    self.program.dispatch(encoder, "count_groups", &it.bound, [1, 1]);
+                    encoder.copy_buffer_to_buffer(&it.counts, u64::from(GROUPS) * 4 + at, &self.groups, at, 12);
+                    self.program.dispatch_counted(encoder, entry, &it.bound, (&self.groups, at));
+                }
             } else {
                 self.program.dispatch(encoder, "sweep", &it.bound, groups);
             }
@@ -452,7 +459,8 @@ impl<'p> GpuEngine<'p> {
         let counts = landed;
         let appended = counts[APPENDED as usize] as usize;
         self.trip = (2 * appended as u64).max(LEAST_TRIP);
-        if appended as u64 > slot.survivors.size() / (4 * words as u64) || u64::from(counts[OPEN as usize]) > self.open_room {
+        let open = counts[OPEN as usize].max(counts[OPEN_PARTS as usize]);
+        if appended as u64 > slot.survivors.size() / (4 * words as u64) || u64::from(open) > self.open_room {
             return Ok(None);
         }
         let records =
@@ -465,8 +473,12 @@ impl<'p> GpuEngine<'p> {
         };
         let reported = self.counted.iter().map(|&words| take(words)).collect();
         let designs = tile.range.end - tile.range.start;
-        let singly = if self.layout.runs.is_some() { counts[SINGLY as usize].into() } else { designs };
-        let counts = TileCounts { sure: counts[SURE as usize].into(), unsure: counts[UNDECIDED as usize].into(), singly, reported };
+        let (open_runs, singly) = match self.layout.runs {
+            Some(_) => (counts[OPEN as usize].into(), counts[SINGLY as usize].into()),
+            None => (0, designs),
+        };
+        let (sure, unsure) = (counts[SURE as usize].into(), counts[UNDECIDED as usize].into());
+        let counts = TileCounts { sure, unsure, open_runs, singly, reported };
         let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
         Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }

@@ -2,7 +2,7 @@
 
 /// Room for survivors of a tile.
 const CAPACITY: u64 = 1 << 20;
-/// Room for open runs of a tile.
+/// Room for open runs of a tile, and for open parts of these.
 const OPEN_ROOM: u64 = 8 << 20;
 
 /// Faults put into a kernel on purpose: `--perturb` and the tests show that they are noticed.
@@ -19,7 +19,7 @@ pub struct Wrong {
     /// Room for survivors, if not the usual.
     #[cfg(feature = "testing")]
     pub capacity: Option<u64>,
-    /// Room for open runs, if not the usual.
+    /// Room for open runs, and for open parts, if not the usual.
     #[cfg(feature = "testing")]
     pub open_runs: Option<u64>,
     /// Begin without a look at what is beside the front: where f64 has found all of it, a device that loses some does no harm.

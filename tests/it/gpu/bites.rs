@@ -149,8 +149,13 @@ fn runs_that_are_judged_too_narrowly_are_noticed() {
     // As if a run's lanes were all like its middle.
     let narrow = ("let reach = 0.5001 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)");
     let fewer = ("counted.x += run.last - run.first;", "counted.x += run.last - run.first - 1u;");
+    let fewer_of_parts =
+        ("counted.x += select(0u, end - here, judged.verdict == YES);", "counted.x += select(0u, end - here - 1u, judged.verdict == YES);");
     let settled = ("return !beaten || may_be_extreme(judged, horizon);", "return false;");
-    for (text, (piece, other)) in [(RUNS, narrow), (&axis, narrow), (RUNS, fewer), (&axis, fewer), (RUNS, settled)] {
+    let one_part = ("open |= 1u << part;", "open = 1u << part;");
+    let other_part = ("let first = open % PARTS * PART;", "let first = 0u;");
+    let both = [narrow, fewer, fewer_of_parts, one_part, other_part].into_iter().flat_map(|it| [(RUNS, it), (axis.as_str(), it)]);
+    for (text, (piece, other)) in both.chain([(RUNS, settled)]) {
         let replace = vec![(piece.to_owned(), other.to_owned())];
         let on = wrong(Wrong { grouped: true, blind: true, replace, ..Wrong::default() });
         let result = Prepared::parse(text).on(&on);
@@ -175,7 +180,7 @@ fn lanes_in_a_wrong_order_are_noticed() {
         // Each lane with the number of the next one, or of another row's.
         ("sorted_lanes[state.column + place].x", "sorted_lanes[state.column + place + 1u].x"),
         ("sorted_lanes[state.column + place].y", "sorted_lanes[place + 1u].y"),
-        ("let last = min(first + RUN_LENGTH, WIDTH) - 1u;", "let last = first;"),
+        ("first_of(run, end) - 1u", "first_of(run, begin)"),
         // All points of the front are taken to be beyond a design, or none.
         ("if low == 0u { return false; }", "return true;"),
     ] {

@@ -64,7 +64,7 @@ fn designs_judged_in_runs_give_the_same_answers() {
         assert_eq!(record.designs, study.plan.designs());
         assert!(record.unsure * 10_000 < record.designs, "{record:?}");
         // Tiles that share a row count their own lanes alone.
-        assert!((1..=record.designs).contains(&record.singly), "{record:?}");
+        assert!((1..=record.designs).contains(&record.singly) && record.open_runs > 0, "{record:?}");
     }
 }
 
@@ -74,7 +74,9 @@ fn runs_in_order_leave_few_designs_to_be_judged_singly_and_fewer_to_f64() {
     let study = Prepared::parse(&text);
     let (state, record) = study.on(&wrong(Wrong { grouped: true, ..Wrong::default() })).expect("the device works");
     assert_same(&state, &study.on_cpu(), &text);
-    assert!(record.singly > 0 && record.singly * 10 < record.designs, "{record:?}");
+    assert!(record.singly > 0 && record.singly * 40 < record.designs, "{record:?}");
+    // Most of what a run leaves open its parts settle: eight of 32 lanes or fewer are judged singly.
+    assert!(record.singly < record.open_runs * 12, "{record:?}");
     assert!(record.survivors > 0 && record.survivors * 1000 < record.designs, "{record:?}");
 }
 
@@ -82,7 +84,7 @@ fn runs_in_order_leave_few_designs_to_be_judged_singly_and_fewer_to_f64() {
 fn a_tile_with_too_many_open_runs_is_repeated_in_parts() {
     for text in [RUNS.to_owned(), along_axis(RUNS)] {
         let study = Prepared::parse(&text);
-        let on = wrong(Wrong { grouped: true, open_runs: Some(100), ..Wrong::default() });
+        let on = wrong(Wrong { grouped: true, open_runs: Some(400), ..Wrong::default() });
         let (state, record) = study.on(&on).expect("the device works");
         assert!(record.repeated > 0, "{record:?}");
         assert_same(&state, &study.on_cpu(), "in parts");

@@ -33,13 +33,13 @@ impl Prelude<'_> {
             if mixed { format!("({}) && ({})", behind.join(" && "), apart.join(" || ")) } else { behind.join(" && ") }
         };
         // A uniform is loaded anew wherever it is read: what every lane is compared with is loaded once per invocation.
-        put!(self, "struct Horizon {{\n    top: f32,");
+        put!(self, "struct Horizon {{\n    top: f32,\n    table: vec4<f32>,");
         for number in 0..objectives.len() {
             put!(self, "    extreme{number}: vec2<f32>,");
             (0..DOMINATORS).for_each(|dominator| put!(self, "    n{dominator}_{number}: f32,"));
         }
         put!(self, "}}\n");
-        let mut lines = vec!["var horizon: Horizon;".to_owned(), "horizon.top = known.top.x;".to_owned()];
+        let mut lines = ["var horizon: Horizon;", "horizon.top = known.top.x;", "horizon.table = known.table;"].map(str::to_owned).to_vec();
         for number in 0..objectives.len() {
             lines.push(format!("horizon.extreme{number} = known.extremes[{number}].xy;"));
             lines.extend((0..DOMINATORS).map(|dominator| {
@@ -75,7 +75,7 @@ impl Prelude<'_> {
             let bin = |number: usize| {
                 let [low, scale] = [["x", "y"], ["z", "w"]][number];
                 // The limit is on the whole number: of an undefined f32 a limit may be undefined too.
-                format!("min(u32((keys.k{number}.x - known.table.{low}) * known.table.{scale}), {}u)", bins - 1)
+                format!("min(u32((keys.k{number}.x - horizon.table.{low}) * horizon.table.{scale}), {}u)", bins - 1)
             };
             let last = objectives.len() - 1;
             let at = if last == 1 { bin(0) } else { format!("{} * {bins}u + {}", bin(0), bin(1)) };
@@ -89,7 +89,7 @@ impl Prelude<'_> {
                 "return false;".to_owned(),
             ]
         };
-        self.function("beaten_by_table(keys: Keys) -> bool", &table);
+        self.function("beaten_by_table(keys: Keys, horizon: Horizon) -> bool", &table);
 
         let mut front = vec!["return false;".to_owned()];
         if looks_through_front(&self.coordinates) {
@@ -211,7 +211,7 @@ impl Prelude<'_> {
         let front = if study.objectives.is_empty() {
             "false"
         } else if self.looks_up_at_once() {
-            "!beaten_by_table(keys_of(lane)) || may_be_extreme(lane, horizon)"
+            "!beaten_by_table(keys_of(lane), horizon) || may_be_extreme(lane, horizon)"
         } else {
             "!beaten_by_dominators(keys_of(lane), horizon) || may_be_extreme(lane, horizon)"
         };

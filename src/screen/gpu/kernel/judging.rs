@@ -6,7 +6,7 @@ use super::*;
 #[derive(Clone, Copy)]
 struct JudgingText<'a> {
     name: &'a str,
-    /// Where: its last parameter.
+    /// Where: its last parameters.
     at: &'a str,
     /// A line that makes the first lane's digits of it.
     begin: &'a str,
@@ -112,7 +112,8 @@ impl Prelude<'_> {
             next: "digits = along(digits, 1u);",
             ..group
         };
-        let run = JudgingText { name: "judge_digits", set: "set_run(&inputs, d{member});", ..one };
+        let stretch =
+            JudgingText { name: "judge_between", at: "digits: Digits, last: Digits", set: "set_stretch(&inputs, d{member}, last);", ..one };
         let onwards = JudgingText { name: "judge_onwards", set: "", judge: "judge_lane_onwards", ..one };
         let number = self.sorted_by().map(|field| format!("prepared.{field} = sorted_number(state, first + {{member}}u);"));
         let in_order = JudgingText {
@@ -124,7 +125,7 @@ impl Prelude<'_> {
             ..group
         };
         let runs = match self.layout.runs.map(|it| it.along) {
-            Some(RunsAlong::Axis { .. }) => vec![along, run],
+            Some(RunsAlong::Axis { .. }) => vec![along, stretch],
             Some(RunsAlong::Order) => vec![onwards, in_order],
             None => Vec::new(),
         };

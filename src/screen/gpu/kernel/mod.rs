@@ -18,7 +18,7 @@ mod rows;
 mod runs;
 
 use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
-use super::cut::{RunsAlong, row_dominators};
+use super::cut::{RunsAlong, looks_at_all, row_dominators};
 use super::held::on_device;
 use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
@@ -34,7 +34,7 @@ use std::fmt::Write;
 /// Entry points of every kernel.
 const ENTRIES: &[&str] = &["prepare_rows", "judge_rows", "sweep", "check"];
 /// Those before `sweep` where lanes are judged in runs first.
-const ENTRIES_OF_RUNS: &[&str] = &["judge_runs", "count_groups"];
+const ENTRIES_OF_RUNS: &[&str] = &["judge_runs", "count_groups", "judge_parts"];
 
 /// Entry points of a study's kernel.
 pub fn entries(layout: &KernelLayout) -> Vec<&'static str> {
@@ -172,9 +172,10 @@ pub fn operations_line(layout: &KernelLayout, text: &str) -> String {
     let singly = |judge: &str| count(&[judge, "look_at_group"]).div_ceil(group);
     let counts = match layout.runs {
         Some(runs) => format!(
-            "{} for a run of up to {} designs, {} for a design that is judged singly",
-            count(&["run_of", "judge_run", "may_be_part"]),
+            "{} for a run of up to {} designs and for a part of up to {}, {} for a design that is judged singly",
+            count(&["run_of", "judge_stretch", "is_open"]),
             runs.length,
+            runs.part,
             singly("judge_in_run")
         ),
         None => format!("{} for a design", singly("judge_group")),
@@ -230,19 +231,17 @@ impl Prelude<'_> {
     fn constants(&mut self) {
         let (plan, layout) = (self.plan, self.layout);
         let cut = layout.cut;
-        let share_or_value = !plan.study.report.maps.is_empty();
-        // Only the closer look knows the index of a design.
-        let report = &plan.study.report;
-        let all = share_or_value || !report.histograms.is_empty() || report.sample.is_some() || report.feasible;
         let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
+        // A part of a run is looked at in one word, or in several where lanes are kept.
+        let block = layout.runs.map_or(cut.block, |runs| cut.block.min(runs.part));
         let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };
         for (name, value) in [
             ("SLOW_SCENARIOS", layout.slow_scenarios.count),
             ("FAST_SCENARIOS", layout.fast_scenarios.count),
             ("OBJECTIVES", plan.study.objectives.len() as u64),
             ("LANES_EACH", cut.lanes_each),
-            ("BLOCK", cut.block),
+            ("BLOCK", block),
             ("BLOCKS", cut.lanes_each.div_ceil(cut.block)),
             ("GROUP", cut.group),
             ("KEPT", if cut.keeps { cut.block } else { 1 }),
@@ -257,7 +256,7 @@ impl Prelude<'_> {
         ] {
             declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
-        for (name, value) in [("KEEPS", cut.keeps), ("USES_ROW_DOMINATORS", uses_row_dominators), ("LOOK_AT_ALL", all)] {
+        for (name, value) in [("KEEPS", cut.keeps), ("USES_ROW_DOMINATORS", uses_row_dominators), ("LOOK_AT_ALL", looks_at_all(plan))] {
             declare(&mut self.text, name, value);
         }
         self.text.push('\n');

@@ -12,10 +12,12 @@ impl Prelude<'_> {
         };
         for (name, value) in [
             ("RUN_LENGTH", runs.length),
+            ("PART", runs.part),
+            ("PARTS", runs.parts()),
             ("RUNS", runs.of_row),
             ("RUNS_EACH", runs.each),
             ("RUN_CHUNKS", runs.chunks()),
-            ("OPEN_RUNS", runs.each * u64::from(WORKGROUP)),
+            ("OPEN_LIST", runs.each.max(runs.parts()) * u64::from(WORKGROUP)),
         ] {
             declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
@@ -25,7 +27,7 @@ impl Prelude<'_> {
         }
     }
 
-    /// From a run's number to its place, and its inputs with the error bound that covers all of its lanes.
+    /// From a run's number to its place, and the inputs of a stretch of it with the error bound that covers all of its lanes.
     fn runs_along_axis(&mut self, runs: Runs, axis: usize, step: u64) {
         declare(&mut self.text, "RUN_STEP", u32::try_from(step).expect("the layout is cut to 32-bit numbers"));
         self.text.push('\n');
@@ -47,16 +49,13 @@ impl Prelude<'_> {
         let lines = ["var there = digits;".to_owned(), format!("there.d{axis} += steps;"), "return there;".to_owned()];
         self.function("along(digits: Digits, steps: u32) -> Digits", &lines);
 
-        let mut set = vec![
-            "var at_first = *inputs;".to_owned(),
-            "set_lane(&at_first, digits);".to_owned(),
-            "set_lane(inputs, along(digits, levels_of_run(digits) - 1u));".to_owned(),
-        ];
+        let mut set =
+            vec!["var at_first = *inputs;".to_owned(), "set_lane(&at_first, first);".to_owned(), "set_lane(inputs, last);".to_owned()];
         for &input in &fast[axis].inputs {
             let name = self.input(input);
             set.push(format!("(*inputs).{name} = between(at_first.{name}, (*inputs).{name});"));
         }
-        self.function("set_run(inputs: ptr<function, Inputs>, digits: Digits)", &set);
+        self.function("set_stretch(inputs: ptr<function, Inputs>, first: Digits, last: Digits)", &set);
     }
 
     /// Which scenarios decide about the designs of each row.
@@ -89,16 +88,14 @@ impl Prelude<'_> {
         }
     }
 
-    /// What a run of sorted lanes is judged from: the number that they differ by, with a bound that covers all of theirs.
+    /// What a stretch of sorted lanes is judged from: the number that they differ by, with a bound that covers all of theirs.
     pub(super) fn sorted(&mut self) {
         let Some(field) = self.sorted_by() else { return };
         let lines = [
-            "let first = number * RUN_LENGTH;".to_owned(),
-            "let last = min(first + RUN_LENGTH, WIDTH) - 1u;".to_owned(),
             "var there = prepared;".to_owned(),
             format!("there.{field} = stretch(sorted_number(state, first), sorted_number(state, last));"),
             "return there;".to_owned(),
         ];
-        self.function("numbers_of_run(prepared: Prepared, state: RowState, number: u32) -> Prepared", &lines);
+        self.function("numbers_between(prepared: Prepared, state: RowState, first: u32, last: u32) -> Prepared", &lines);
     }
 }
