@@ -52,7 +52,8 @@ fn lane_at(state: RowState, first: u32, i: u32) -> u32 {
     return first + i * RUN_STEP;
 }
 
-// A bit for each lane of a block, from `begin` up to `end`, that the tile has. A part of a run has one at least, a block need not.
+// A bit for each lane of a block, from `begin` up to `end`, that the tile has. An open part has at least one such lane, a block of it may
+// have none.
 fn lanes_here(run: Run, state: RowState, begin: u32, end: u32) -> u32 {
     let all = 0xffffffffu >> (32u - (end - begin));
     return select(0u, all & (0xffffffffu << (max(run.first, begin) - begin)), run.first < end);

@@ -1,17 +1,16 @@
 // Second stage where lanes with results that are near each other stand in runs. Judged once, a run shows what all its lanes have in common.
-// Most are settled by that: no lane is feasible, or all are and the front beats them. The others are judged again in parts, since it is a
-// border that leaves them open, which crosses one part or two. Only the lanes of these are judged one by one.
+// Most are settled by that: no lane is feasible, or all are and the front beats them. What leaves a run open is a border that crosses it,
+// and a border crosses one or two of its parts. So open runs are judged again in parts, and only lanes of parts that are still open are
+// judged one by one.
 //
-// A first pass judges the runs and lists those that are open; a second one has an invocation for each of these and lists their open parts; a
-// third one has an invocation for each part. Within one pass the invocations that meet a settled run would wait for their neighbours, and a
-// software device would compute what it then drops.
+// A first pass judges the runs and lists those that are open; a second one has an invocation for each of these and lists their open parts;
+// a third one has an invocation for each part. Within one pass the invocations that meet a settled run would wait for their neighbours, and
+// a software device would compute what it then drops.
 
-// What a workgroup found open. It is put there when an invocation has met all of its own: a software device takes the lanes of a vector one
-// after the other to it.
+// What a workgroup found open. An invocation puts all of its own there at once, after its loop: a software device does an atomic operation
+// lane by lane.
 var<workgroup> open_list: array<u32, OPEN_LIST>;
 var<workgroup> open_count: atomic<u32>;
-// Lanes of open parts, where it is known by now how many the tile has.
-var<workgroup> open_lanes: atomic<u32>;
 // Where what is open begins in the list of the tile.
 var<workgroup> first_open: u32;
 
@@ -36,7 +35,7 @@ fn is_open(judged: Lane, horizon: Horizon, counted: bool) -> bool {
     return judged.verdict == UNSURE || LOOK_AT_ALL || !counted || may_be_part(judged, horizon);
 }
 
-// Where an open run stands in the list of the tile, which is behind its rows, and where an open part does, behind the runs.
+// Open runs are listed behind the rows of the tile, open parts behind the room for open runs.
 fn open_run_at(number: u32) -> u32 {
     return ROW_WORDS * tile.rows + number;
 }
@@ -45,8 +44,8 @@ fn open_part_at(number: u32) -> u32 {
     return ROW_WORDS * tile.rows + tile.open_room + number;
 }
 
-// Puts what a workgroup found open into the list of the tile that begins at word `list` and whose length stands in `counts`. Each invocation
-// comes with a bit for each that it found, counted from number `first`.
+// Puts what a workgroup found open into a list of the tile. Bit `i` of `bits` stands for number `first + i`; `list` is the first word of
+// the list, `length` the word of `counts` with its length.
 fn list_open(invocation: u32, bits: u32, first: u32, list: u32, length: u32) {
     var place = atomicAdd(&open_count, countOneBits(bits));
     for (var rest = bits; rest != 0u; rest &= rest - 1u) {
@@ -66,7 +65,7 @@ fn list_open(invocation: u32, bits: u32, first: u32, list: u32, length: u32) {
     }
 }
 
-// How many of a list there was room for.
+// How many entries of a list are stored.
 fn listed(length: u32) -> u32 {
     return min(atomicLoad(&counts[length]), tile.open_room);
 }
@@ -99,25 +98,26 @@ fn judge_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invoc
     list_open(invocation, open, at * RUNS + first, open_run_at(0u), OPEN);
 }
 
-// How many workgroups the second pass takes, and once that has run, the third one.
+// Workgroups of the second and the third pass. It runs before each of them: those of the third one are right the second time.
 @compute @workgroup_size(1)
 fn count_groups() {
-    let runs = (listed(OPEN) + (WORKGROUP - 1u)) / WORKGROUP;
-    let parts = (listed(OPEN_PARTS) + (WORKGROUP - 1u)) / WORKGROUP;
-    for (var level = 0u; level < 2u; level++) {
-        let groups = select(parts, runs, level == 0u);
-        atomicStore(&counts[GROUPS + 3u * level], min(groups, MOST_GROUPS));
-        atomicStore(&counts[GROUPS + 3u * level + 1u], (groups + (MOST_GROUPS - 1u)) / MOST_GROUPS);
-        atomicStore(&counts[GROUPS + 3u * level + 2u], 1u);
-    }
+    store_groups(listed(OPEN), GROUPS);
+    store_groups(listed(OPEN_PARTS), GROUPS + 3u);
 }
 
-// Which of a list an invocation takes.
+fn store_groups(invocations: u32, word: u32) {
+    let groups = (invocations + (WORKGROUP - 1u)) / WORKGROUP;
+    atomicStore(&counts[word], min(groups, MOST_GROUPS));
+    atomicStore(&counts[word + 1u], (groups + (MOST_GROUPS - 1u)) / MOST_GROUPS);
+    atomicStore(&counts[word + 2u], 1u);
+}
+
+// The place in its list of what an invocation takes.
 fn number_of(id: vec3<u32>) -> u32 {
     return id.y * (MOST_GROUPS * WORKGROUP) + id.x;
 }
 
-// Judges the parts of an open run.
+// Judges the parts of an open run. Where no run is open this pass has no workgroups.
 @compute @workgroup_size(WORKGROUP)
 fn judge_parts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
     let number = number_of(id);
@@ -130,7 +130,6 @@ fn judge_parts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
     let held = hold_prepared(run.row);
     var counted = vec2<u32>(0u, 0u);
     var open = 0u;
-    var lanes = 0u;
     for (var part = 0u; part < PARTS; part++) {
         let begin = part * PART;
         let end = min(begin + PART, run.last);
@@ -144,15 +143,10 @@ fn judge_parts(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
                 }
             }
             open |= 1u << part;
-            lanes += end - here;
         }
     }
     add_to_counts(counted);
-    atomicAdd(&open_lanes, select(0u, lanes, is_whole));
     list_open(invocation, open, open_run * PARTS, open_part_at(0u), OPEN_PARTS);
-    if invocation == 0u {
-        atomicAdd(&counts[SINGLY], atomicLoad(&open_lanes));
-    }
 }
 
 // Judges the lanes of an open part one by one.
@@ -170,6 +164,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation
     let state = load_row(run.row);
     let held = hold_prepared(run.row);
     var counted = vec2<u32>(0u, 0u);
+    var singly = 0u;
     for (var begin = first; begin < last; begin += BLOCK) {
         let end = min(begin + BLOCK, last);
         var seen = Seen(0u, 0u);
@@ -183,12 +178,11 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation
             look_at_group(group, horizon, i, end - begin, &seen, &none, &kept);
         }
         let here = lanes_here(run, state, begin, end);
-        if !is_counted() {
-            atomicAdd(&counts[SINGLY], countOneBits(here));
-        }
+        singly += countOneBits(here);
         seen.sure &= here;
         seen.flagged &= here;
         counted += look_closer(seen, run.row, state, held, horizon, first_of(run, begin), &kept, local);
     }
     add_to_counts(counted);
+    atomicAdd(&counts[SINGLY], singly);
 }

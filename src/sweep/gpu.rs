@@ -215,7 +215,10 @@ impl Run<'_, '_> {
             let designs = range.end - range.start;
             let Some((counts, survivors)) = found else {
                 if designs == 1 {
-                    return Err(self.engine.device().error("one design has more survivors or open runs than there is room for"));
+                    return Err(self
+                        .engine
+                        .device()
+                        .error("one design has more survivors, open runs or open parts than there is room for"));
                 }
                 self.record.repeated += 1;
                 most = (designs / 2).max(1);

@@ -25,9 +25,9 @@ shared_constants! {
     const UNDECIDED: u32 = 1;
     /// Word of the counts: survivors, those for which there was no room among them.
     const APPENDED: u32 = 2;
-    /// Word of the counts: runs that must be judged in parts, those for which there was no room in their list.
+    /// Word of the counts: runs that must be judged in parts, also those for which there was no room in their list.
     const OPEN: u32 = 3;
-    /// Word of the counts: parts of these whose lanes must be judged singly, those for which there was no room in their list.
+    /// Word of the counts: parts of these whose lanes must be judged singly, also those for which there was no room in their list.
     const OPEN_PARTS: u32 = 4;
     /// Word of the counts: their lanes.
     const SINGLY: u32 = 5;

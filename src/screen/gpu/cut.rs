@@ -12,8 +12,8 @@ use crate::tape::{List, Operation};
 pub const MOST_ITERATIONS: u64 = 55_000;
 /// Most workgroups of a dispatch along either side.
 pub const MOST_GROUPS: u64 = MOST_GROUPS_U32 as u64;
-/// Lanes of a block: their answers are the bits of one word. Also most lanes of a run: the longer, the fewer runs there are, and the more of
-/// them are open.
+/// Lanes of a block: their answers are the bits of one word. Also most lanes of a run: the longer, the fewer runs there are, and the more
+/// of them are open.
 const BLOCK: u64 = 32;
 /// Lanes of a part of a run: the shorter, the more parts of an open run there are to judge, and the fewer lanes are judged singly then.
 const PART: u64 = 8;
@@ -25,6 +25,8 @@ const GROUP: [u64; 2] = [4, 2];
 const LEAST_LEVELS: u64 = 8;
 /// Most runs that an invocation of the first pass takes: those that are open stand in the workgroup's memory.
 const MOST_TURNS: u64 = 16;
+/// Those that are open, and open parts of a run, are bits of one word.
+const _: () = assert!(MOST_TURNS <= 32 && BLOCK / PART <= 32);
 /// Evaluations of a small study.
 const SMALL: u64 = 20_000_000;
 
@@ -98,8 +100,8 @@ impl Extras {
 }
 
 impl Runs {
-    /// Runs along the longest fast axis whose values only rise or only fall, and that nothing asks for by itself. None where lanes are judged
-    /// singly, or where neighbours in a row decide over each other.
+    /// Runs along the longest fast axis whose values only rise or only fall, and that nothing asks for by itself. None where lanes are
+    /// judged singly, or where neighbours in a row decide over each other.
     pub fn new(plan: &Plan, fast: &[FastDimension], asked: Set, cut: Cut, own: u64) -> Option<Self> {
         if cut.group == 1 || row_dominators(plan) || plan.lane_outputs.is_empty() {
             return None;
@@ -171,8 +173,8 @@ fn is_monotone(dimension: &SpaceDimension) -> bool {
 }
 
 impl Cut {
-    /// Loop iterations of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
-    /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept. `own`: of the formula.
+    /// Loop iterations of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in
+    /// the closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept. `own`: of the formula.
     fn iterations(plan: &Plan, own: u64, keeps: bool) -> (u64, u64) {
         let shared = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
         let own = plan.scenarios() * own;

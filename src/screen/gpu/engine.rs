@@ -224,7 +224,8 @@ impl<'p> GpuEngine<'p> {
         let program = if wrong.keeps_text() {
             // SAFETY: the text is ours; what a study adds are formulas of numbers, without an index or a loop that ours do not have. Each
             // index is compared with the length of its array, or cut to it, or comes from a buffer that only this engine and its kernel
-            // write, with what is below that length. Where a group of lanes reads beyond the last lane, its buffer is longer by a group
+            // write, with what is below that length, or is a count of what the array has room for. Where no run is open, the pass that
+            // reads the last one has no workgroups. Where a group of lanes reads beyond the last lane, its buffer is longer by a group
             // less one. Loops count up or down between numbers that are known when they begin, halve a range, or clear bits. Integers are
             // divided by constants that are not zero, and by a number of groups, of which there is at least one.
             #[allow(unsafe_code, reason = "wgpu has no other way to leave its checks out")]
@@ -444,7 +445,7 @@ impl<'p> GpuEngine<'p> {
         self.device.write(&self.levels, self.layout.levels.len() as u64 * 16, &entries);
     }
 
-    /// Waits for a tile. `None` if it had more survivors than there is room for: it must be repeated in parts.
+    /// Waits for a tile. `None` if it had more survivors, open runs or open parts than there is room for: it must be repeated in parts.
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu).
@@ -474,7 +475,7 @@ impl<'p> GpuEngine<'p> {
         let reported = self.counted.iter().map(|&words| take(words)).collect();
         let designs = tile.range.end - tile.range.start;
         let (open_runs, singly) = match self.layout.runs {
-            Some(_) => (counts[OPEN as usize].into(), counts[SINGLY as usize].into()),
+            Some(runs) => (if runs.parts() > 1 { counts[OPEN as usize].into() } else { 0 }, counts[SINGLY as usize].into()),
             None => (0, designs),
         };
         let (sure, unsure) = (counts[SURE as usize].into(), counts[UNDECIDED as usize].into());

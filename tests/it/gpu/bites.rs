@@ -197,6 +197,7 @@ fn a_run_that_two_tiles_share_is_counted_once() {
     for (study, piece, other) in [
         (&axis, "let before = max(tile.first_lane, run.first_lane) - run.first_lane;", "let before = 0u;"),
         (&axis, "let until = max(tile.last_lane, run.first_lane) - run.first_lane;", "let until = RUN_LENGTH * RUN_STEP;"),
+        (&axis, "let here = max(begin, run.first);", "let here = begin;"),
         (&axis, "seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
         (&in_order, "seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
         (&in_order, "return tile.first_lane == 0u && tile.last_lane == WIDTH;", "return true;"),

@@ -112,8 +112,12 @@ impl Prelude<'_> {
             next: "digits = along(digits, 1u);",
             ..group
         };
-        let stretch =
-            JudgingText { name: "judge_between", at: "digits: Digits, last: Digits", set: "set_stretch(&inputs, d{member}, last);", ..one };
+        let stretch = JudgingText {
+            name: "judge_between",
+            at: "digits: Digits, at_last: Digits",
+            set: "set_stretch(&inputs, d{member}, at_last);",
+            ..one
+        };
         let onwards = JudgingText { name: "judge_onwards", set: "", judge: "judge_lane_onwards", ..one };
         let number = self.sorted_by().map(|field| format!("prepared.{field} = sorted_number(state, first + {{member}}u);"));
         let in_order = JudgingText {

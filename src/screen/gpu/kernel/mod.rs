@@ -171,13 +171,15 @@ pub fn operations_line(layout: &KernelLayout, text: &str) -> String {
     let group = layout.cut.group;
     let singly = |judge: &str| count(&[judge, "look_at_group"]).div_ceil(group);
     let counts = match layout.runs {
-        Some(runs) => format!(
-            "{} for a run of up to {} designs and for a part of up to {}, {} for a design that is judged singly",
-            count(&["run_of", "judge_stretch", "is_open"]),
-            runs.length,
-            runs.part,
-            singly("judge_in_run")
-        ),
+        Some(runs) => {
+            let part = if runs.parts() > 1 { format!(" and for a part of up to {}", runs.part) } else { String::new() };
+            format!(
+                "{} for a run of up to {} designs{part}, {} for a design that is judged singly",
+                count(&["run_of", "judge_stretch", "is_open"]),
+                runs.length,
+                singly("judge_in_run")
+            )
+        }
         None => format!("{} for a design", singly("judge_group")),
     };
     format!("// Operations in the inner loops, a loop within them counted once: {counts}.\n")
@@ -233,7 +235,7 @@ impl Prelude<'_> {
         let cut = layout.cut;
         let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
-        // A part of a run is looked at in one word, or in several where lanes are kept.
+        // A part of a run is looked at in one block, or in several where lanes are kept or an invocation has few.
         let block = layout.runs.map_or(cut.block, |runs| cut.block.min(runs.part));
         let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };
         for (name, value) in [
