@@ -246,12 +246,14 @@ impl Explorer {
             let effort = plan.effort();
             (effort.prepare + effort.finish) * (places * given.len() as u64) as f64
         };
-        let given = if takes(PLACES) < MOST_SECONDS { &given[..] } else { &[] };
+        let is_left_out = takes(PLACES) >= MOST_SECONDS && !given.is_empty();
+        let given = if is_left_out { &[] } else { &given[..] };
         let (columns, slices) = around_with(&plan, design, PLACES, given, self.live.threads(), control)?;
         let mut told = slices::told(&plan, &columns, &slices);
         told["kind"] = "around".into();
         // Those over what the study gives come last.
         told["given"] = given.len().into();
+        told["given_left_out"] = is_left_out.into();
         tell((told, Vec::new()))
     }
 }

@@ -215,6 +215,17 @@ fn changes_are_undone_shared_saved_and_compared() {
     assert!(after > 0.0 && after < before, "{after} of {before}");
     assert_eq!(browser.number("beltspace.page.changes().size"), 1.0);
     let first = browser.text("beltspace.page.changeList().join()");
+    // The front of before stays behind as a ghost, as long as it is asked for.
+    let ghosts = "(() => { const drawn = document.querySelector('#splom canvas'); const { page } = beltspace; \
+         const copy = Object.assign(document.createElement('canvas'), { width: drawn.width, height: drawn.height }); \
+         const context = copy.getContext('2d', { willReadFrequently: true }); context.drawImage(drawn, 0, 0); \
+         const { buffer } = context.getImageData(0, 0, copy.width, copy.height).data; \
+         const own = page.pixel(page.variable('--ghost')); return new Uint32Array(buffer).filter((it) => it === own).length; })()";
+    assert_eq!(browser.number("beltspace.page.ghost.rows"), before);
+    assert!(browser.number(ghosts) > 20.0, "no ghost is painted");
+    browser.click_on("#ghost");
+    assert_eq!(browser.number(ghosts), 0.0);
+    browser.click_on("#ghost");
     browser.picture("explore-dragged");
     assert_eq!(differs(&mut browser, SMALL, folder.path()), None);
     browser.evaluate(COUNT);
@@ -248,6 +259,20 @@ fn changes_are_undone_shared_saved_and_compared() {
     // By its name in the table of pinned designs too.
     browser.evaluate("document.querySelectorAll('.pins .pin-name')[1].click()");
     assert_eq!(browser.number("beltspace.page.state.card"), browser.number("beltspace.page.front.rows - 1"));
+    browser.wait("document.querySelector('#all-outputs table')");
+    // With other changes they are not on the front; what is known of them, and the changes, are shown all the same.
+    let design = browser.text("String(beltspace.page.pins()[1].design)");
+    browser.evaluate(COUNT);
+    browser.click_on("#undo");
+    answered(&mut browser);
+    browser.evaluate("document.querySelectorAll('.pins .pin-name')[1].click()");
+    let said = browser.text("document.querySelector('#card').innerText");
+    assert!(said.contains(&format!("Design {design}")) && said.contains(&format!("with {first}")), "{said}");
+    assert!(said.contains("stress_margin") && said.contains("band_count"), "{said}");
+    browser.evaluate(COUNT);
+    browser.click_on("#redo");
+    answered(&mut browser);
+    browser.evaluate("document.querySelectorAll('.pins .pin-name')[1].click()");
     browser.wait("document.querySelector('#all-outputs table')");
     // Findings come after the plots, which stay where they are; beside the card the button covers nothing.
     browser.wait("document.querySelector('#tally .findings li')");

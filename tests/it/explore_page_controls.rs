@@ -279,10 +279,17 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
         "(() => { const box = document.createElement('div'); box.id = 'apart'; document.body.append(box); \
          beltspace.page.drawSlices(box, { columns: [{ name: 'margin', unit: '', doc: '' }], slices: [{ input: 'speed_rpm', unit: 'rpm', \
          own: 1450, words: null, at: [1431.9, 1432.1, 1450], feasible: [false, true, true], status: [null, null, null], \
-         lines: [{ values: [-1, 1, 2], scenarios: [0, 0, 0] }] }] }); })()",
+         lines: [{ values: [-1, 1, 2], scenarios: [0, 0, 7] }] }], given_left_out: true }); })()",
     );
     let said = browser.text("document.querySelector('#apart').textContent");
     assert!(said.contains("to 1432.1 rpm; at 1431.9 rpm "), "{said}");
+    // Another scenario is the worst at the last place; and what took too long to judge is said to be missing.
+    assert_eq!(
+        browser.evaluate("[...document.querySelectorAll('#apart .switch title')].map((it) => it.textContent)"),
+        serde_json::json!(["from here on the worst scenario is #7"])
+    );
+    assert!(said.contains("Other loads and fixed values are left out"), "{said}");
+    assert_eq!(browser.number("document.querySelectorAll('#around [data-testid=given-left-out]').length"), 0.0);
     // However long the value, the name beside it is whole.
     assert_eq!(browser.evaluate("[...document.querySelectorAll('#readout dt')].every((it) => it.scrollWidth <= it.clientWidth)"), true);
     let told = browser.evaluate("document.querySelector('#readout').textContent");

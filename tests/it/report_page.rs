@@ -220,6 +220,8 @@ fn dark_and_light_maps_and_pictures_of_a_pulley() {
         browser.wait(&format!("getComputedStyle(document.body).backgroundColor !== {dark:?}"));
         let pictures = browser.number("document.querySelectorAll('#figures svg, #figures img, #maps svg, #maps img, #maps canvas').length");
         assert!(pictures >= 1.0, "{name} shows {pictures} pictures");
+        // Every map can be saved, those that are too large for cells too.
+        assert_eq!(browser.number("document.querySelectorAll('#maps figure:not(:has(.save-buttons))').length"), 0.0, "{name}");
         assert!(browser.complaints.is_empty(), "{name}: {:#?}", browser.complaints);
     }
 }

@@ -26,7 +26,7 @@ page.short = (value) => {
 };
 
 // Units as people write them.
-page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm");
+page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm").replace(/(?<=m)[23](?!\w)/g, (power) => ({ 2: "²", 3: "³" })[power]);
 
 // Numbers in a text of the program, grouped as all others are; those of designs stay whole.
 page.grouped = (text) => text.replace(/(?<![\w.-]|design )\d{5,}(?![\w-])/g, (digits) => page.count(digits));

@@ -194,13 +194,19 @@
     if (again && again.isConnected) again.focus({ preventScroll: true });
   };
 
-  // A design that is not on the front: what a table or a map says of it, and the command that computes everything.
+  // A design on the front, or what a table or a map says of it.
   page.openDesign = (design, known) => {
     const row = page.front ? page.rowOf(String(design)) : -1;
-    if (row >= 0) return page.openCard(row);
-    const head = page.element("div", { class: "card-head" }, page.element("div", {}, page.element("h2", { id: "card-title" }, `Design ${design}`), page.element("p", { class: "muted" }, "not on the front")), page.element("div", { class: "card-buttons no-print" }, page.element("button", { type: "button", id: "card-close", "aria-label": "Close (Esc)", title: "Close (Esc)", click: page.closeCard }, "×")));
+    return row >= 0 ? page.openCard(row) : page.openKnown(design, [], known);
+  };
+
+  // A design that is not on the front shown, or one of other changes of the study: what is known of it, and for the study as it is the command
+  // that computes everything.
+  page.openKnown = (design, changes, known) => {
+    const place = changes.length ? `with ${changes.join(", ")}` : "not on the front";
+    const head = page.element("div", { class: "card-head" }, page.element("div", {}, page.element("h2", { id: "card-title" }, `Design ${design}`), page.element("p", { class: "muted" }, place)), page.element("div", { class: "card-buttons no-print" }, page.element("button", { type: "button", id: "card-close", "aria-label": "Close (Esc)", title: "Close (Esc)", click: page.closeCard }, "×")));
     const line = ({ name, unit, text, full }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(name)), valueCell(name, full, text, text === "" || !Number.isFinite(Number(full)) ? "" : unit));
-    const evaluate = page.data.evaluate ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(String(design)), "evaluate")) : null;
+    const evaluate = page.data.evaluate && !changes.length ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(String(design)), "evaluate")) : null;
     return show(null, [head, section("What is known of it", table("values", known.map(line))), evaluate].filter(Boolean), true);
   };
 

@@ -204,7 +204,11 @@
         const numbers = await page.inflate(map.cells.packed);
         const count = map.x.values.length * map.y.values.length;
         drawCells(figures[i], map, new Float64Array(numbers, 0, count), map.cells.indices ? new BigUint64Array(numbers, 8 * count, count) : null);
-      } else if (map.picture) figures[i].append(page.picture(map.picture));
+      } else if (map.picture) {
+        const picture = page.picture(map.picture);
+        figures[i].querySelector(".title-line").append(page.saveButtonsOf(`the map of ${map.value.name}`, `map-${map.value.name}`, () => picture));
+        figures[i].append(picture);
+      }
       if (map.stripes) figures[i].append(page.element("p", { class: "notice", "data-testid": "stripes" }, map.stripes));
     }
   };

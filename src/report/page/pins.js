@@ -116,7 +116,9 @@
     const rows = [...names].sort((a, b) => a[1] - b[1]).map(([name]) => name);
     const open = (pin) => {
       const row = isOf(pin, shownSet()) ? page.rowOf(pin.design) : -1;
-      if (row >= 0) page.openCard(row);
+      if (row >= 0) return page.openCard(row);
+      const known = [...pin.values].filter(([, { role }]) => role in order).map(([name, { value, text, unit }]) => ({ name, unit, text, full: page.full(value) }));
+      page.openKnown(pin.design, isOf(pin, shownSet()) ? [] : pin.set, known);
     };
     const head = (pin) =>
       page.element(

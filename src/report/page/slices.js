@@ -87,13 +87,20 @@
     if (!told.length) return [];
     const each = ([column, line]) => {
       const value = valuesOf(line).find(Number.isFinite);
-      return value === undefined ? `${column.name} has no value` : `${column.name} ${page.short(value)}${column.unit ? ` ${page.unit(column.unit)}` : ""}`;
+      const limits = limitsOf(column.name).map(page.short).join(" and ");
+      return value === undefined ? `${column.name} has no value` : `${column.name} ${page.short(value)}${column.unit ? ` ${page.unit(column.unit)}` : ""}${limits ? ` (limit ${limits})` : ""}`;
     };
     return [`leaves unchanged ${told.map(each).join(", ")}`];
   };
 
   // As many ticks as have room beside each other.
   const ticksOf = (x, format) => [3, 2, 1].map((count) => x.ticks(count)).find((ticks) => ticks.length < 2 || x(ticks[1]) - x(ticks[0]) > 12 + (DIGIT * (format(ticks[0]).length + format(ticks[1]).length)) / 2) ?? x.ticks(3).slice(0, 1);
+
+  // At the edge of a chart, towards a limit that it does not reach.
+  const arrow = (isAbove) => {
+    const [tip, base] = isAbove ? [PAD.top, PAD.top + 6] : [HEIGHT - PAD.bottom, HEIGHT - PAD.bottom - 6];
+    return `M${WIDTH - PAD.right - 6},${tip}l4,${base - tip}h-8z`;
+  };
 
   const chart = (slice, column, line) => {
     const values = valuesOf(line);
@@ -120,7 +127,11 @@
     // Where the design would be infeasible.
     const half = (i) => (i < 0 ? x.domain()[0] : i >= slice.at.length - 1 ? x.domain()[1] : (slice.at[i] + slice.at[i + 1]) / 2);
     slice.feasible.forEach((is, i) => is || svg.append("rect").attr("class", "no-go").attr("x", x(half(i - 1))).attr("width", Math.max(0, x(half(i)) - x(half(i - 1)))).attr("y", PAD.top).attr("height", HEIGHT - PAD.top - PAD.bottom));
-    for (const limit of limits) if (limit >= y.domain()[0] && limit <= y.domain()[1]) svg.append("path").attr("class", "limit").attr("d", `M${left},${y(limit)}H${WIDTH - PAD.right}`);
+    for (const limit of limits) {
+      const isAbove = limit > y.domain()[1];
+      if (!isAbove && limit >= y.domain()[0]) svg.append("path").attr("class", "limit").attr("d", `M${left},${y(limit)}H${WIDTH - PAD.right}`);
+      else svg.append("path").attr("class", "limit-beyond").attr("d", arrow(isAbove)).append("title").text(`limit of ${column.name}: ${page.short(limit)}, beyond this chart`);
+    }
     const path = d3.line((_, i) => x(slice.at[i]), (value) => y(value)).defined(Number.isFinite);
     if (slice.words) values.forEach((value, i) => Number.isFinite(value) && svg.append("circle").attr("class", "slice-dot").attr("r", 2.5).attr("cx", x(slice.at[i])).attr("cy", y(value)).append("title").text(`${slice.words[i]}: ${page.short(value)}`));
     else svg.append("path").attr("class", "slice-line").attr("d", path(values));
@@ -135,15 +146,16 @@
     return svg.node();
   };
 
-  page.drawSlices = (box, { columns, slices, given = 0 }) => {
+  page.drawSlices = (box, { columns, slices, given = 0, given_left_out: isLeftOut = false }) => {
     const caption = (column) => page.element("figcaption", { title: column.doc }, page.breakable(column.name), column.unit ? page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`) : null);
     const cell = (slice, column, line) => (isSame(line) ? null : page.element("figure", { class: "slice-cell" }, caption(column), chart(slice, column, line)));
     const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
     slices.forEach((slice, i) => (slice.isGiven = i >= slices.length - given));
     const row = (slice) => page.element("div", { class: "slice-row" }, page.element("div", { class: "slice-head" }, page.element("h3", {}, page.breakable(slice.input)), text(slice)), page.element("div", { class: "slice-cells" }, slice.lines.map((line, i) => cell(slice, columns[i], line))));
     const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.flatMap((slice, i) => [given > 0 && i === slices.length - given ? page.element("h3", { class: "slice-group" }, "With other loads and fixed values") : [], row(slice)].flat()));
-    const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst.");
-    box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list);
+    const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst. An arrow: a limit beyond the chart.");
+    const note = isLeftOut ? page.element("p", { class: "hint", "data-testid": "given-left-out" }, "Other loads and fixed values are left out: a design of this study takes too long to judge.") : "";
+    box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list, note);
   };
 
   // The page of a result holds those of the knee only.

@@ -216,7 +216,7 @@
   page.startAnswers = () => {
     page.timings.answers = [];
     page.timings.fews = [];
-    let settled = 0;
+    let settled = -Infinity;
     let computing = 0;
     const rest = page.afterPause(400, () => document.body.classList.remove("moves"));
     page.events.on("changes.answer", () => {
