@@ -253,6 +253,33 @@ fn what_is_saved_and_copied_is_the_study_as_it_is_changed_now() {
 
 #[test]
 #[ignore = "needs the browser of the Debian package chromium"]
+fn no_control_is_under_the_head_of_the_panel_when_the_focus_goes_back_to_it() {
+    let (_folder, file) = study_file(DRAWN);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser.resize(1366, 500);
+    let mut covered = || {
+        browser.evaluate("document.querySelector('#theme').focus()");
+        let mut found = 0;
+        for _ in 0..50 {
+            browser.shift_tab();
+            found += usize::from(
+                browser.evaluate(
+                    "(() => { const at = document.activeElement; const head = document.querySelector('.controls-head'); \
+                     return at.closest('#controls') !== null && !head.contains(at) && at.getBoundingClientRect().top < head.getBoundingClientRect().bottom - 1; })()",
+                ) == true,
+            );
+        }
+        // Without its rule the panel lets them go there.
+        browser.evaluate("document.querySelector('#controls').style.scrollPaddingTop = '0'");
+        found
+    };
+    assert_eq!(covered(), 0);
+    assert!(covered() > 0, "this test sees nothing");
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
 fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     let (_folder, file) = study_file(DRAWN);
     let explored = Explored::new(&file, &[]);

@@ -149,6 +149,9 @@ fn views_of_the_same_designs_stand_side_by_side_on_a_laptop() {
     let [one, other]: [[f64; 4]; 2] = serde_json::from_value(browser.evaluate(places)).expect("two views");
     assert!(other[0] >= one[2] && other[1] == one[1] && other[2] <= 1366.0, "{one:?} {other:?}");
     assert!(one[3].max(other[3]) < 768.0 - 46.0, "{one:?} {other:?}");
+    // The first link of the page leads past what stands above the plots.
+    browser.evaluate("document.querySelector('[data-skip]').click()");
+    assert_eq!(browser.evaluate("document.activeElement.closest('#splom') !== null"), true, "the link leads to the plots");
     // A pinned design is in every view.
     browser.evaluate("beltspace.page.pin(0)");
     for view in ["#splom .pin-dot", "#parallel .pin-line", "#designs .pin-letter", ".map-stage .pin-dot"] {

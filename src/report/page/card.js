@@ -11,7 +11,7 @@
   };
 
   const valueCell = (name, full, text, unit, ending = null) =>
-    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${page.unit(unit)}`) : null, ending);
+    page.element("td", { class: `number${String(text).length > 24 ? " long" : ""}` }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${page.unit(unit)}`) : null, ending);
 
   const endMark = (column, row) => {
     const end = page.endOf(column, row);

@@ -44,7 +44,8 @@
 
   document.querySelector("[data-skip]").addEventListener("click", (event) => {
     event.preventDefault();
-    const target = document.querySelector("#splom [tabindex], #figures, #main");
+    // The first of these that is there; the last one is around the others.
+    const target = ["#splom [tabindex]", "#figures:not([hidden])", "#main"].map((it) => document.querySelector(it)).find(Boolean);
     if (!target.hasAttribute("tabindex")) target.setAttribute("tabindex", "-1");
     target.focus();
   });

@@ -1,7 +1,7 @@
 //! Chromium over its debugging protocol.
 
 use super::wire::Wire;
-use super::{Driven, Event, wait_for};
+use super::{Driven, Event, Held, wait_for};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -62,13 +62,14 @@ impl Driven for Chromium {
         );
     }
 
-    fn key(&mut self, key: &str, code: u32, control: bool) {
+    fn key(&mut self, key: &str, code: u32, held: Held) {
         let text = if key == "Enter" { "\r" } else { "" };
-        let named = if control { format!("Key{}", key.to_uppercase()) } else { key.to_owned() };
+        let modifiers = [0, 2, 8][held as usize];
+        let named = if held == Held::Control { format!("Key{}", key.to_uppercase()) } else { key.to_owned() };
         for kind in ["keyDown", "keyUp"] {
             self.0.call(
                 "Input.dispatchKeyEvent",
-                &json!({ "type": kind, "key": key, "code": named, "windowsVirtualKeyCode": code, "text": text, "modifiers": 2 * u32::from(control) }),
+                &json!({ "type": kind, "key": key, "code": named, "windowsVirtualKeyCode": code, "text": text, "modifiers": modifiers }),
             );
         }
     }

@@ -1,7 +1,7 @@
 //! Firefox over WebDriver BiDi, which it speaks itself.
 
 use super::wire::Wire;
-use super::{Driven, Event, wait_for};
+use super::{Driven, Event, Held, wait_for};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -95,7 +95,7 @@ impl Driven for Firefox {
         self.act("pointer", &actions);
     }
 
-    fn key(&mut self, key: &str, _code: u32, control: bool) {
+    fn key(&mut self, key: &str, _code: u32, held: Held) {
         let value = match key {
             "Enter" => "\u{e007}",
             "Escape" => "\u{e00c}",
@@ -108,8 +108,11 @@ impl Driven for Firefox {
         };
         let down = |value: &str| json!({ "type": "keyDown", "value": value });
         let up = |value: &str| json!({ "type": "keyUp", "value": value });
-        let held = "\u{e009}";
-        let actions = if control { json!([down(held), down(value), up(value), up(held)]) } else { json!([down(value), up(value)]) };
+        let actions = match held {
+            Held::None => json!([down(value), up(value)]),
+            Held::Control => json!([down("\u{e009}"), down(value), up(value), up("\u{e009}")]),
+            Held::Shift => json!([down("\u{e008}"), down(value), up(value), up("\u{e008}")]),
+        };
         self.act("key", &actions);
     }
 

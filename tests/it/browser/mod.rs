@@ -22,7 +22,7 @@ trait Driven {
     /// `mouseMoved`, `mousePressed` or `mouseReleased`; is the button held?
     fn mouse(&mut self, kind: &str, x: f64, y: f64, held: bool);
     /// Presses a key, by the name that the page sees and the number that Windows has for it.
-    fn key(&mut self, key: &str, code: u32, control: bool);
+    fn key(&mut self, key: &str, code: u32, held: Held);
     fn choose_file(&mut self, selector: &str, file: &Path);
     /// A PNG of what is seen, in base64.
     fn picture(&mut self) -> Value;
@@ -30,6 +30,14 @@ trait Driven {
     fn paper(&mut self, width: f64, height: f64) -> Value;
     /// What has happened since it was last asked.
     fn events(&mut self) -> Vec<Event>;
+}
+
+/// The key that is held while another one is pressed.
+#[derive(Clone, Copy, PartialEq)]
+enum Held {
+    None,
+    Control,
+    Shift,
 }
 
 /// What a browser tells of a page.
@@ -196,13 +204,18 @@ impl Browser {
 
     /// Presses a key, by the name that the page sees.
     pub fn key(&mut self, key: &str, code: u32) {
-        self.driven.key(key, code, false);
+        self.driven.key(key, code, Held::None);
         self.note();
+    }
+
+    /// Goes back to what had the focus before.
+    pub fn shift_tab(&mut self) {
+        self.driven.key("Tab", 9, Held::Shift);
     }
 
     /// Presses a letter with the control key.
     pub fn control_key(&mut self, letter: char) {
-        self.driven.key(&letter.to_string(), letter.to_ascii_uppercase().into(), true);
+        self.driven.key(&letter.to_string(), letter.to_ascii_uppercase().into(), Held::Control);
     }
 
     /// Chooses a file as a person does in the dialogue of the system.
