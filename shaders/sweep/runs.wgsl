@@ -27,12 +27,13 @@ fn may_be_part(judged: Lane, horizon: Horizon) -> bool {
     return !beaten || may_be_extreme(judged, horizon);
 }
 
-// Does what a stretch of lanes has in common leave any of them to be judged by itself?
-fn is_open(judged: Lane, horizon: Horizon, counted: bool) -> bool {
+// Does what a stretch of lanes has in common leave any of them to be judged by itself? `is_whole`: does the tile have all lanes of its rows,
+// or is it known which?
+fn is_open(judged: Lane, horizon: Horizon, is_whole: bool) -> bool {
     if judged.verdict == NO {
         return false;
     }
-    return judged.verdict == UNSURE || LOOK_AT_ALL || !counted || may_be_part(judged, horizon);
+    return judged.verdict == UNSURE || LOOK_AT_ALL || !is_whole || may_be_part(judged, horizon);
 }
 
 // Open runs are listed behind the rows of the tile, open parts behind the room for open runs.

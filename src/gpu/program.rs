@@ -192,7 +192,7 @@ impl Program {
         self.pass(encoder, entry, bound).dispatch_workgroups(groups[0], groups[1], 1);
     }
 
-    /// The same; over how many workgroups, three words of a buffer say by then, from this byte on.
+    /// The same over as many workgroups as three words of a buffer say by then. `groups`: the buffer, and the byte where these words begin.
     ///
     /// # Panics
     /// If the entry point was not compiled.

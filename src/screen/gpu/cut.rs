@@ -223,7 +223,7 @@ impl Cut {
     }
 }
 
-/// Is every feasible design looked at, because only that tells its index? Where many are feasible, parts of a run would settle few more.
+/// Does the report need each feasible design by itself? Then a part of a run is settled only if nothing in it is feasible, which saves little.
 pub fn looks_at_all(plan: &Plan) -> bool {
     let report = &plan.study.report;
     !report.maps.is_empty() || !report.histograms.is_empty() || report.sample.is_some() || report.feasible
@@ -270,8 +270,9 @@ mod tests {
                     // What one lane takes may pass the target by its closer look.
                     assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");
                     if let Some(runs) = layout.runs {
-                        let of_open = runs.iterations_of_open(cut, (shared, alone));
-                        for iterations in [runs.each * (shared + alone), of_open] {
+                        let of_parts = runs.length.div_ceil(runs.part) * (shared + alone);
+                        let of_lanes = runs.part.div_ceil(cut.group) * shared + runs.part * alone;
+                        for iterations in [runs.each * (shared + alone), of_parts, of_lanes] {
                             assert!(
                                 iterations <= MOST_ITERATIONS,
                                 "{model}, {scenarios} scenarios: {runs:?} takes {iterations} iterations"

@@ -235,7 +235,7 @@ impl Prelude<'_> {
         let cut = layout.cut;
         let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
-        // A part of a run is looked at in one block, or in several where lanes are kept or an invocation has few.
+        // No block is longer than a part of a run. It is shorter where lanes are kept, or where a row has few.
         let block = layout.runs.map_or(cut.block, |runs| cut.block.min(runs.part));
         let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };
         for (name, value) in [
