@@ -9,7 +9,7 @@ use crate::live::LiveAnswer;
 use crate::live::around::{PLACES, around_with};
 use crate::models::Models;
 use crate::plan::Plan;
-use crate::report::{givens, live as told, sections, slices};
+use crate::report::{givens, inputs, live as told, sections, slices};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, ReportColumn, Study, number, value_of};
 use serde::Deserialize;
@@ -223,15 +223,15 @@ impl Explorer {
             let value = at.value.map(number);
             json!({ "name": column.name, "unit": column.unit(&plan.study), "doc": column.doc(&plan.study), "value": value, "scenario": value.as_ref().map(|_| at.scenario) })
         });
-        let inputs = plan.study.design.iter().flat_map(Axis::inputs);
+        let chosen = plan.study.design.iter().flat_map(Axis::inputs);
         let inputs: Map<_, _> =
-            inputs.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input]))).collect();
+            chosen.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input]))).collect();
         let scenarios: std::collections::BTreeSet<u64> = row.columns.iter().filter(|it| it.value.is_some()).map(|it| it.scenario).collect();
         let told = json!({
             "kind": "design", "design": design.to_string(), "inputs": inputs, "outputs": named.collect::<Vec<_>>(), "feasible": row.feasible,
             "status": row.status.reason(model), "without_result": row.without_result,
             "scenarios": told::scenarios(&plan, &scenarios), "section": sections::of_design(&plan, design),
-            "givens": givens::of_design(&plan, design),
+            "givens": givens::of_design(&plan, design), "described": inputs::inputs(&plan.study),
         });
         tell((told, Vec::new()))
     }

@@ -43,6 +43,28 @@ fn described(study: &Study, number: usize, input: &Input) -> Value {
     described
 }
 
+/// Most numbers and texts that a page holds of the design axes.
+const MOST_LEVELS: u64 = 20_000;
+
+/// The levels of the design axes, with which a page knows what the number of a design stands for: of each axis how many it has, and of every
+/// input and label their values. `null` where a number stands for a sampled design, or if they would be too many.
+pub fn axes(study: &Study) -> Value {
+    let width = |axis: &Axis| (axis.inputs().len() + study.labels_of(axis).count()) as u64;
+    if study.sample.is_some() || study.design.iter().map(|axis| axis.count() * width(axis)).sum::<u64>() > MOST_LEVELS {
+        return Value::Null;
+    }
+    let of_axis = |axis: &Axis| {
+        let of_input = |(column, &input): (usize, &usize)| {
+            let values: Vec<Value> = (0..axis.count()).map(|level| value_of(&study.model, input, axis.value(column, level))).collect();
+            json!({ "name": study.model.inputs[input].name, "values": values })
+        };
+        let labels = study.labels_of(axis).map(|label| json!({ "name": label.name, "values": label.texts }));
+        let columns: Vec<Value> = labels.chain(axis.inputs().iter().enumerate().map(of_input)).collect();
+        json!({ "count": axis.count(), "columns": columns })
+    };
+    study.design.iter().map(of_axis).collect()
+}
+
 /// The distribution of an input, or of its tolerance.
 fn law_of<'p>(probability: Option<&'p Probability>, name: &str) -> Option<&'p UncertainInput> {
     probability?.inputs.iter().find(|it| it.name == name)
@@ -81,6 +103,32 @@ pub fn drawn(study: &Study) -> Value {
 mod tests {
     use super::*;
     use crate::study::study_of;
+
+    #[test]
+    fn a_designs_number_is_told_by_its_axes() {
+        let text = "[design]\ncases = [{ band_count = 6, band_thickness_mm = 0.2 }, { band_count = 9, band_thickness_mm = 0.15 }]\n\
+                    groove_angle_deg = [20, 22, 24]\n[objectives]\naxial_force_N = \"min\"\n";
+        let model = crate::models::find("metal-cvt").expect("it is a model");
+        let plan = crate::plan::Plan::new(study_of(&model, text).expect("the study is right"));
+        let axes = axes(&plan.study);
+        for design in 0..plan.designs() {
+            let (inputs, mut rest) = (plan.space.inputs(design, 0), design);
+            for axis in axes.as_array().expect("a list").iter().rev() {
+                let count = axis["count"].as_u64().expect("a count");
+                for column in axis["columns"].as_array().expect("a list") {
+                    let input = model.input(column["name"].as_str().expect("a name")).expect("an input");
+                    let level = usize::try_from(rest % count).expect("it is small");
+                    assert_eq!(column["values"][level].as_f64(), Some(inputs[input]), "design {design}: {column}");
+                }
+                rest /= count;
+            }
+            assert_eq!(rest, 0);
+        }
+        // A sampled design's number says nothing of its levels.
+        let sampled = "[design]\ngroove_angle_deg = { from = 20, to = 24 }\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1000\nseed = 7\n[objectives]\naxial_force_N = \"min\"\n";
+        let sampled = study_of(&model, sampled).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(super::axes(&sampled), Value::Null);
+    }
 
     #[test]
     fn only_ranges_have_ends() {

@@ -6,7 +6,7 @@
 mod front;
 pub(crate) mod givens;
 mod influence;
-mod inputs;
+pub(crate) mod inputs;
 #[cfg(feature = "cli")]
 pub mod live;
 mod page;
@@ -27,7 +27,7 @@ use crate::reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
 use crate::reduce::Reported;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
-use inputs::{drawn, inputs};
+use inputs::{axes, drawn, inputs};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::time::Duration;
@@ -130,6 +130,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         },
         "run": json_of(folder, RUN).ok().filter(summary::is_run),
         "inputs": inputs(study),
+        "axes": axes(study),
         "drawn": drawn(study),
         "objectives": objectives,
         "constraints": constraints,

@@ -19,6 +19,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/rows.js"),
     include_str!("page/pins.js"),
     include_str!("page/letters.js"),
+    include_str!("page/known.js"),
     include_str!("page/choose/ranking.js"),
     include_str!("page/choose/stability.js"),
     include_str!("page/choose/weigh.js"),

@@ -72,6 +72,10 @@ mod report_page_choose;
 mod report_page_crowds;
 /// The drive drawn to scale and the slices of the knee, on that page.
 mod report_page_drawn;
+/// Pages with the keyboard.
+mod report_page_keys;
+/// The page of a study with one objective.
+mod report_page_one;
 /// The same: other results over it.
 mod report_page_others;
 /// That page on paper.

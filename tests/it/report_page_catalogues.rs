@@ -36,6 +36,18 @@ fn rows_of_a_catalogue_are_called_by_their_labels_and_are_no_ranges() {
     let (wide, wanted) = (groove["wide"].as_f64().expect("a number"), number("groove_width_mm") / number("mean_radius_mm"));
     assert!((wide / wanted - 1.0).abs() < 1e-3, "{wide} instead of {wanted}");
     assert!(groove["text"].as_str().is_some_and(|it| it.contains("mean r") && it.matches("mm").count() == 3), "{groove}");
+    // A label of many letters without a space is wrapped, in the card and in slices.
+    browser.resize(1366, 900);
+    browser.evaluate(
+        "(() => { const { page } = beltspace; const column = page.front.byName.get('section'); const long = 'x'.repeat(180); \
+         column.words[column.values[page.front.knee]] = long; beltspace.openCard(page.front.knee); \
+         page.drawSlices(document.querySelector('.around-box'), { columns: [], slices: [{ input: 'section', unit: '', own: 0, words: [long], \
+         at: [0], feasible: [true], status: [null], lines: [] }] }); })()",
+    );
+    let wide = "['#card', '#around'].map((it) => document.querySelector(it)).map((it) => it.scrollWidth > it.clientWidth)";
+    assert_eq!(browser.evaluate(wide), serde_json::json!([false, false]));
+    browser.evaluate("document.querySelectorAll('#card .long, .slice-head').forEach((it) => { it.style.overflowWrap = 'normal'; })");
+    assert_eq!(browser.evaluate(wide), serde_json::json!([true, true]), "this test sees nothing");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

@@ -1,6 +1,7 @@
 //! The page of a result on paper: Chromium's PDF, read again by poppler-utils.
 
 use crate::browser::Browser;
+use crate::explore_page::{Explored, SMALL, open, study_file};
 use crate::report_page::Swept;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -91,13 +92,49 @@ fn no_sheet_of_any_study_is_half_empty_and_no_title_is_broken_inside_a_word() {
         assert!(read_by("pdftotext", &["-layout", "-f", "1", "-l", "1", path, "-"]).contains("Pareto front"), "{name}");
         let whole = read_by("pdftotext", &["-layout", "-f", "1", "-l", "2", path, "-"]);
         let axes: Vec<String> = serde_json::from_value(browser.evaluate("beltspace.state.parallel")).expect("names");
-        for part in axes.iter().flat_map(|it| it.split_inclusive('_')) {
+        for part in axes.iter().flat_map(|it| it.split('_')) {
             assert!(whole.split_whitespace().any(|word| word.contains(part)), "{name}: {part} is broken");
         }
         // What was made for paper is gone again.
         assert_eq!(browser.text("document.documentElement.className"), "");
         assert_eq!(browser.complaints, Vec::<String>::new());
     }
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_live_page_is_printed_without_its_controls_and_so_is_a_sheet_of_a_design() {
+    let (folder, study) = study_file(SMALL);
+    let explored = Explored::new(&study, &[]);
+    let mut browser = open(&explored);
+    browser.wait("beltspace.timings.counted > 0 && document.querySelectorAll('#around svg.slice').length >= 4");
+    let file = folder.path().join("page.pdf");
+    let printed = |browser: &mut Browser| {
+        std::fs::write(&file, browser.paper()).expect("it can be written");
+        let filled = filled(&file);
+        assert!(filled[..filled.len() - 1].iter().all(|&it| it > 0.5), "{filled:?}");
+        read_by("pdftotext", &["-layout", file.to_str().expect("a path of characters"), "-"])
+    };
+    let whole = printed(&mut browser);
+    for part in ["A small belt", "Pareto front", "Around design", "must hold", "designs are feasible"] {
+        assert!(whole.contains(part), "no {part}: {whole}");
+    }
+    for part in ["Design axes", "Fixed values", "Save as study", "Undo"] {
+        assert!(!whole.contains(part), "{part} is printed: {whole}");
+    }
+    browser.evaluate("beltspace.openCard(0)");
+    browser.wait("document.querySelector('#all-outputs table')");
+    // The button prints the card alone.
+    browser.evaluate("window.print = () => { window.sheet = document.body.className; }");
+    browser.click_on("#card-print");
+    assert!(browser.text("window.sheet").contains("sheet"));
+    browser.evaluate("document.body.classList.add('sheet')");
+    let sheet = printed(&mut browser);
+    for part in ["A small belt", "Drawn to scale", "Margins", "All other outputs"] {
+        assert!(sheet.contains(part), "no {part}: {sheet}");
+    }
+    assert!(!sheet.contains("Pareto front"), "{sheet}");
+    assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
 #[test]

@@ -21,7 +21,8 @@
       if (list(state.parallel) !== defaults.parallel) parts.push(`pc=${list(state.parallel)}`);
       add("inv", list([...state.inverted]));
       if (state.colour !== defaults.colour) add("col", encode(state.colour ?? ""));
-      add("d", state.card !== null ? page.designOf(state.card) : state.awaited);
+      const known = state.known && String(state.known.set) === String(page.changeList ? page.changeList() : []) ? state.known.design : null;
+      add("d", state.card !== null ? page.designOf(state.card) : (known ?? state.awaited));
     }
     add("t", state.theme);
     if (page.front) {
@@ -56,7 +57,8 @@
     }
   };
 
-  // Whatever the page does not know, such as a column of another study, is ignored.
+  // Whatever the page does not know, such as a column of another study, is ignored. What opens the card of the address, once the views are
+  // there; null without one.
   page.readAddress = () => {
     const { state, front } = page;
     const given = new Map(location.hash.slice(1).split("&").map((part) => [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)]));
@@ -90,9 +92,12 @@
     page.readPins(given.get("p"));
     page.readNear(given.get("wn"));
     page.readWeights(given.get("w"), given.get("a"));
-    const row = given.has("d") ? page.rowOf(given.get("d")) : -1;
-    state.awaited = row < 0 && page.awaits() ? (given.get("d") ?? null) : null;
-    return row >= 0 ? row : null;
+    const design = given.get("d") ?? "";
+    const row = page.rowOf(design);
+    state.awaited = row < 0 && page.awaits() ? design || null : null;
+    if (row >= 0) return () => page.openCard(row);
+    const elsewhere = state.awaited === null ? page.knownOf(design) : null;
+    return elsewhere && (() => page.openKnown(elsewhere));
   };
 
   page.startAddress = () => {
@@ -108,13 +113,13 @@
       written = location.hash;
       // Before the designs: they are those of the changed study.
       if (page.readChanges) page.readChanges();
-      const row = page.readAddress();
+      const open = page.readAddress();
       page.applyTheme();
       if (!page.front) return;
       page.events.call("columns");
       page.events.call("colour");
       page.applySelection();
-      if (row !== null) return page.openCard(row);
+      if (open) return open();
       const { awaited } = page.state;
       page.closeCard();
       page.state.awaited = awaited;

@@ -64,9 +64,11 @@
   // On an axis of words every word has a tick.
   page.axisOf = (orient, column, scale, count) => {
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
-    if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
+    if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => page.wordText(column.words[i]));
     if (Number.isNaN(column.low)) return axis.tickValues([]);
-    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
+    // Around a value that stands alone there is nothing to measure; where there is a range, its ticks are those of any other axis.
+    const [from, to] = scale.domain();
+    if (column.low === column.high && to - from <= 0.2 * (Math.abs(column.low) || 10)) return axis.tickValues([column.low]).tickFormat(page.exactly);
     // A whole number has no digits after its point, however few of them there are.
     const ticks = scale.ticks(count);
     const isFine = column.whole && ticks.some((tick) => !Number.isInteger(tick));

@@ -6,7 +6,7 @@
   const rangeText = (name, [low, high]) => {
     const column = page.front.byName.get(name);
     if (column.words) {
-      const words = column.words.filter((_, i) => i >= low && i <= high);
+      const words = column.words.filter((_, i) => i >= low && i <= high).map(page.wordText);
       return `${name} ${words.length ? words.join(", ") : "none"}`;
     }
     return `${name} ${page.short(low)} to ${page.short(high)}${column.unit ? ` ${page.unit(column.unit)}` : ""}`;
@@ -55,7 +55,8 @@
     return ["With the engine: ", page.element("code", { tabindex: 0 }, command)];
   };
 
-  const update = () => {
+  const update = () => page.keepFocus(page.byId("bar"), show);
+  const show = () => {
     const { state, front } = page;
     page.byId("selected-count").textContent = page.count(page.selectedCount);
     page.byId("selected-share").textContent = ` of ${page.count(front.rows)} design${front.rows === 1 ? "" : "s"} on the front selected`;

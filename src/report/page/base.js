@@ -20,13 +20,23 @@ page.short = (value) => {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return String(Number(value.toPrecision(4))).replace(/^-/, "−").replace("e-", "e−");
+  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return page.powerText(value);
   const text = size >= 1000 ? String(Math.round(size)) : String(Number(size.toPrecision(4)));
   return (value < 0 ? "−" : "") + (size >= 1000 ? page.count(text) : text);
 };
 
+// Very small and very large numbers, with a power of ten.
+page.powerText = (value) => Number(value.toPrecision(4)).toExponential().replace(/^-/, "−").replace("e+", "e").replace("e-", "e−");
+
+// A number that stands for itself on an axis: eight significant digits, or those that it has.
+page.exactly = (value) => {
+  if (typeof value !== "number" || !Number.isFinite(value) || page.short(value).includes("e")) return page.short(value);
+  const [whole, part] = String(Math.abs(Number(value.toPrecision(8)))).split(".");
+  return `${value < 0 ? "−" : ""}${page.count(whole)}${part ? `.${part}` : ""}`;
+};
+
 // Units as people write them.
-page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm").replace(/(?<=m)[23](?!\w)/g, (power) => ({ 2: "²", 3: "³" })[power]);
+page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm").replace(/\b([kcdm]?m)([23])\b/g, (_, length, power) => length + { 2: "²", 3: "³" }[power]);
 
 // Numbers in a text of the program, grouped as all others are; those of designs stay whole.
 page.grouped = (text) => text.replace(/(?<![\w.-]|design )\d{5,}(?![\w-])/g, (digits) => page.count(digits));
@@ -66,11 +76,12 @@ page.seconds = (s) => {
 };
 
 // A name as the axes of the pictures have it: words, and the unit in brackets in place of the last ones.
-page.axisName = (name, unit) => {
+page.axisWords = (name, unit) => {
   const suffix = `_${(unit ?? "").replace("/", "_per_").replace("µ", "u").replace(/[ ·]/g, "")}`;
   const stem = unit && name.endsWith(suffix) && name.length > suffix.length ? name.slice(0, -suffix.length) : name;
-  return stem.replace(/_/g, " ") + (unit ? ` [${page.unit(unit)}]` : "");
+  return stem.replace(/_/g, " ");
 };
+page.axisName = (name, unit) => page.axisWords(name, unit) + (unit ? ` [${page.unit(unit)}]` : "");
 
 page.withUnit = (name, unit) => (unit ? `${name} [${page.unit(unit)}]` : name);
 
@@ -123,6 +134,47 @@ page.afterPause = (pause, work) => {
     waiting = setTimeout(look, pause);
   };
 };
+
+// Draws a part of the page anew. Who had the focus in it has it afterwards: on the same control, by what `data-focus` or its id calls it, on
+// another of the same thing (`data-focus` is an action and a thing), or on the one that has come to its place; without any, on `otherwise`.
+page.keepFocus = (box, draw, otherwise = null) => {
+  const focused = box.contains(document.activeElement) && document.activeElement !== box ? document.activeElement : null;
+  const stops = () => [...box.querySelectorAll("a[href], button, input, select, summary, [tabindex]")].filter((it) => !it.disabled && it.getClientRects().length);
+  const nameOf = (it) => it.dataset.focus || it.id || (it.dataset.x ?? null);
+  const at = focused ? stops().indexOf(focused) : -1;
+  const result = draw();
+  if (!focused || (document.activeElement === focused && !focused.disabled)) return result;
+  const now = stops();
+  const name = nameOf(focused);
+  const thing = focused.dataset.focus?.replace(/^\S+/, "");
+  const next = (name && now.find((it) => nameOf(it) === name)) || (thing && now.find((it) => it.dataset.focus?.endsWith(thing))) || now[Math.max(0, Math.min(at, now.length - 1))] || document.querySelector(otherwise);
+  next?.focus({ preventScroll: true });
+  return result;
+};
+
+// Buttons of which one is a stop for the tab key; the left and the right arrow go on from there. The buttons above the lines of a table are
+// reached from these with the upper arrow: `below` is the first line, if there is any, which is the stop then.
+page.oneStop = (box, selector, below = null) => {
+  const buttons = [...box.querySelectorAll(selector)].filter((it) => !it.disabled);
+  const stopAt = (button) => buttons.forEach((it) => it.setAttribute("tabindex", it === button && !below ? 0 : -1));
+  buttons.forEach((button, at) => {
+    button.addEventListener("focus", () => stopAt(button));
+    button.addEventListener("keydown", (event) => {
+      const next = { ArrowRight: buttons[at + 1], ArrowLeft: buttons[at - 1], Home: buttons[0], End: buttons[buttons.length - 1], ArrowDown: below };
+      if (!(event.key in next)) return;
+      next[event.key]?.focus();
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  });
+  stopAt(buttons[0]);
+};
+
+// Said aloud, by those who hear the page.
+page.say = (text) => (page.byId("said").textContent = text);
+
+// A label may be empty.
+page.wordText = (word) => (word === "" ? "(empty)" : word);
 
 page.tip = (event, text) => {
   const tip = page.byId("tip");

@@ -6,7 +6,11 @@
   const step = (by) => {
     const { card } = page.state;
     const rows = page.mask.length;
-    for (let row = card + by; row >= 0 && row < rows; row += by) if (page.mask[row]) return page.openCard(row);
+    for (let row = card + by; row >= 0 && row < rows; row += by) {
+      if (!page.mask[row]) continue;
+      page.openCard(row);
+      return page.announce(row);
+    }
     return null;
   };
 
@@ -77,12 +81,12 @@
     return front.objectives.length ? section("Objectives, from worst to best on the front", table("bars", front.objectives.map(line))) : null;
   };
 
-  // Each bound of a constraint, and how far the worst case stays from it.
-  const marginsOf = ({ column, min, max, above, below }) => {
+  // Each bound of a constraint, and how far a value stays from it.
+  const boundsOf = ({ min, max, above, below }) => {
     const given = (value) => value !== null && value !== undefined;
     const bounds = [];
-    for (const [value, text] of [[min, "at least"], [above, "above"]]) if (given(value)) bounds.push({ text: `${text} ${page.short(value)}`, margin: (row) => column.values[row] - value });
-    for (const [value, text] of [[max, "at most"], [below, "below"]]) if (given(value)) bounds.push({ text: `${text} ${page.short(value)}`, margin: (row) => value - column.values[row] });
+    for (const [bound, text] of [[min, "at least"], [above, "above"]]) if (given(bound)) bounds.push({ text: `${text} ${page.short(bound)}`, marginAt: (value) => value - bound });
+    for (const [bound, text] of [[max, "at most"], [below, "below"]]) if (given(bound)) bounds.push({ text: `${text} ${page.short(bound)}`, marginAt: (value) => bound - value });
     return bounds;
   };
 
@@ -93,8 +97,9 @@
     const fresh = front.shown.find((column) => column.name === "yield");
     const constraints = wanted && fresh ? [...front.constraints, { ...wanted, column: fresh }] : front.constraints;
     const lines = constraints.flatMap((constraint) =>
-      marginsOf(constraint).map(({ text, margin }) => {
+      boundsOf(constraint).map(({ text, marginAt }) => {
         const { column } = constraint;
+        const margin = (at) => marginAt(column.values[at]);
         const largest = Math.max(margin(rowOfExtreme(column, "low")), margin(rowOfExtreme(column, "high")));
         const share = largest > 0 ? margin(row) / largest : 0;
         const said = `margin ${page.short(margin(row))}, the largest on the front is ${page.short(largest)}`;
@@ -164,11 +169,14 @@
     return section("Evaluate again", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), parts);
   };
 
+  const button = (id, label, text, click, disabled) => page.element("button", { type: "button", id, "aria-label": label, title: label, click, disabled }, text);
+  // For cards of designs that are not on the front.
+  page.cardParts = { section, table, valueCell, command, evaluateOf, boundsOf, button };
+
   const named = (row) => [`Design ${page.full(page.designOf(row))}`, row === page.chosenRow() ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : ""];
 
   const build = (row) => {
     const { front } = page;
-    const button = (id, label, text, click, disabled) => page.element("button", { type: "button", id, "aria-label": label, title: label, click, disabled }, text);
     const any = (by) => {
       for (let i = row + by; i >= 0 && i < front.rows; i += by) if (page.mask[i]) return true;
       return false;
@@ -194,37 +202,25 @@
     if (again && again.isConnected) again.focus({ preventScroll: true });
   };
 
-  // A design on the front, or what a table or a map says of it.
-  page.openDesign = (design, known) => {
-    const row = page.front ? page.rowOf(String(design)) : -1;
-    return row >= 0 ? page.openCard(row) : page.openKnown(design, [], known);
-  };
-
-  // A design that is not on the front shown, or one of other changes of the study: what is known of it, and for the study as it is the command
-  // that computes everything.
-  page.openKnown = (design, changes, known) => {
-    const place = changes.length ? `with ${changes.join(", ")}` : "not on the front";
-    const head = page.element("div", { class: "card-head" }, page.element("div", {}, page.element("h2", { id: "card-title" }, `Design ${design}`), page.element("p", { class: "muted" }, place)), page.element("div", { class: "card-buttons no-print" }, page.element("button", { type: "button", id: "card-close", "aria-label": "Close (Esc)", title: "Close (Esc)", click: page.closeCard }, "×")));
-    const line = ({ name, unit, text, full }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(name)), valueCell(name, full, text, text === "" || !Number.isFinite(Number(full)) ? "" : unit));
-    const evaluate = page.data.evaluate && !changes.length ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(String(design)), "evaluate")) : null;
-    return show(null, [head, section("What is known of it", table("values", known.map(line))), evaluate].filter(Boolean), true);
-  };
-
   page.openCard = (row, takesFocus = true) => {
     if (!page.front || !(row >= 0 && row < page.front.rows)) return;
-    show(row, build(row), takesFocus);
+    page.showCard(row, () => build(row), takesFocus);
   };
 
-  const show = (row, children, takesFocus) => {
+  let rebuild = null; // what makes the card that is open
+  const pressed = { is: false, later: false }; // is a button held down on the card, and is it to be built anew then?
+
+  // `known`: the design of the card if it has no row.
+  page.showCard = (row, children, takesFocus, known = null) => {
     const card = page.byId("card");
     const fresh = card.hidden;
     const within = card.contains(document.activeElement) ? document.activeElement.id : "";
     if (fresh) opener = document.activeElement;
     const width = page.byId("main").clientWidth;
-    page.state.card = row;
-    page.state.awaited = null;
+    Object.assign(page.state, { card: row, known, awaited: null });
     card.inert = false;
-    card.replaceChildren(...children);
+    rebuild = children;
+    card.replaceChildren(...children());
     card.hidden = false;
     document.body.classList.add("with-card");
     const again = within && page.byId(within);
@@ -242,7 +238,7 @@
     const width = page.byId("main").clientWidth;
     card.hidden = true;
     document.body.classList.remove("with-card");
-    page.state.card = null;
+    Object.assign(page.state, { card: null, known: null });
     page.events.call("card");
     layoutIfNarrower(width);
     returnFocus();
@@ -251,6 +247,7 @@
   // Its design is not on the front any more.
   page.closeLostCard = () => {
     page.byId("card").hidden = true;
+    page.state.known = null;
     document.body.classList.remove("with-card");
     page.events.call("card");
   };
@@ -263,20 +260,34 @@
   };
 
   page.startCard = () => {
+    const card = page.byId("card");
     const again = () => {
-      const focused = document.activeElement && document.activeElement.id;
-      if (page.state.card === null) return;
-      page.byId("card").replaceChildren(...build(page.state.card));
-      if (focused && focused.startsWith("card-")) page.byId(focused)?.focus();
+      if (card.hidden || (page.state.card === null && !page.state.known)) return;
+      // A press on something that is exchanged before it is let go would be lost.
+      if (pressed.is) pressed.later = true;
+      else if (page.state.card !== null) page.keepFocus(card, () => card.replaceChildren(...build(page.state.card)));
+      else page.keepFocus(card, () => card.replaceChildren(...rebuild()));
     };
+    card.addEventListener("pointerdown", () => (pressed.is = true));
+    const release = () => {
+      if (!pressed.is) return;
+      // After the click.
+      setTimeout(() => {
+        pressed.is = false;
+        if (pressed.later) again();
+        pressed.later = false;
+      });
+    };
+    for (const event of ["pointerup", "pointercancel"]) document.addEventListener(event, release);
     page.events.on("pins.card", again);
     page.events.on("front.card", again);
     page.events.on("choice.card", () => page.state.card !== null && page.byId("card-title").replaceChildren(...named(page.state.card)));
     document.addEventListener("keydown", (event) => {
       if (page.byId("card").hidden || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();
+      else if (page.state.card === null && !page.state.known) return;
+      else if (event.key === "p" && card.contains(event.target)) page.pin(page.state.card ?? page.state.known);
       else if (page.state.card === null) return;
-      else if (event.key === "p" && page.byId("card").contains(event.target)) page.pin(page.state.card);
       else if (!page.byId("card").contains(event.target)) return;
       else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);
       else return;

@@ -48,7 +48,7 @@
     const bound = (which) => page.element("input", { type: "number", step: "any", class: "bound", "data-bound": which, "data-column": column.name, placeholder: page.short(which === "low" ? column.low : column.high).replace("−", "-"), "aria-label": `${column.name}, ${which === "low" ? "at least" : "at most"}` });
     const inputs = [bound("low"), bound("high")];
     inputs.forEach((input) => input.addEventListener("change", () => setRange(column, inputs)));
-    const words = (word, i) => page.element("button", { type: "button", class: "word-button", click: () => setWord(column, i), "aria-label": `${column.name}: only ${word}` }, word);
+    const words = (word, i) => page.element("button", { type: "button", class: "word-button", click: () => setWord(column, i), "aria-label": `${column.name}: only ${page.wordText(word)}` }, page.wordText(word));
     const range = column.words ? page.element("td", { colspan: 2 }, column.words.map(words)) : inputs.map((input) => page.element("td", {}, input));
     return page.element("tr", {}, page.element("th", { scope: "row", title: column.doc }, column.name), page.element("td", {}, page.unit(column.unit)), page.element("td", {}, check(column, "matrix")), page.element("td", {}, check(column, "parallel")), range);
   };

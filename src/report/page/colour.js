@@ -88,7 +88,7 @@
     const format = scale.tickFormat(count);
     const [a, b] = scale.domain();
     const size = Math.max(Math.abs(a), Math.abs(b));
-    if (size >= 1e7 || (size < 1e-3 && size > 0)) return d3.format("~e");
+    if (size >= 1e7 || (size < 1e-3 && size > 0)) return (value) => (value === 0 ? "0" : page.powerText(value));
     return (value) => {
       const text = format(value).replace(/,/g, "");
       const whole = text.match(/\d+/)?.[0] ?? "";
@@ -105,7 +105,7 @@
     const swatch = (word, i) => {
       const square = page.element("span", { class: "swatch" });
       square.style.background = wordColours(column)?.[i] ?? ramp(place(i));
-      return page.element("span", { class: "word" }, square, word);
+      return page.element("span", { class: "word" }, square, page.wordText(word));
     };
     return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));
   };

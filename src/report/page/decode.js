@@ -69,7 +69,8 @@
   // A column as the text of one value: a word or a number.
   page.valueText = (column, row, text = page.short) => {
     const value = column.values[row];
-    if (column.words) return column.words[value] ?? text(NaN);
+    // With every digit a word is as the file has it.
+    if (column.words) return value in column.words ? (text === page.full ? column.words[value] : page.wordText(column.words[value])) : text(NaN);
     if (column.exact) return column.exact[row];
     return text(value, column.type);
   };

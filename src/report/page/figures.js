@@ -20,7 +20,8 @@
     }
   };
 
-  page.picture = (text) => {
+  // `name`: what it shows, for those who do not see it.
+  page.picture = (text, name) => {
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     if (parsed.nodeName !== "svg" || parsed.namespaceURI !== "http://www.w3.org/2000/svg") return page.element("p", { class: "notice" }, "This picture cannot be shown.");
     strip(parsed);
@@ -28,6 +29,7 @@
     parsed.removeAttribute("width");
     parsed.removeAttribute("height");
     parsed.setAttribute("role", "img");
+    parsed.setAttribute("aria-label", name);
     const paper = page.element("div", { class: "paper" });
     paper.append(document.importNode(parsed, true));
     return paper;
@@ -44,9 +46,8 @@
   };
 
   const figureOf = (figure) => {
-    const paper = page.picture(figure.svg);
     const title = figure.title || figure.id;
-    paper.querySelector("svg")?.setAttribute("aria-label", title);
+    const paper = page.picture(figure.svg, title);
     const button = page.element("button", { type: "button", class: "no-print", click: () => enlarge(paper, title) }, "Enlarge");
     const head = page.element("div", { class: "title-line" }, page.element("strong", {}, title), page.element("div", { class: "save-buttons no-print" }, page.saveButtonsOf(title, figure.id, () => paper), button));
     const caption = page.element("figcaption", {}, head, figure.caption ? page.element("div", {}, figure.caption) : null, figure.csv ? page.element("div", { class: "muted" }, `numbers: ${figure.csv}`) : null);

@@ -9,7 +9,7 @@
   // Which lines are of the design that all views show, by its number.
   const markCurrent = (body) => {
     const row = page.state.current ?? page.state.card;
-    const design = row === null || !page.front ? null : page.designOf(row);
+    const design = row === null || !page.front ? (page.state.known?.design ?? null) : page.designOf(row);
     for (const line of body.rows) line.classList.toggle("is-current", line.dataset.row === design);
   };
 
@@ -27,8 +27,7 @@
     // On paper all columns stand beside each other: letters are as large as their number allows.
     table.style.setProperty("--printed", `${Math.min(8, SHEET / columns.filter((_, at) => kind(at) !== "number of-scenario").length).toFixed(1)}px`);
     if (index >= 0) {
-      const known = (row) => columns.map((name, at) => ({ name, unit: units ? units[at] : "", text: shown(row[at], at), full: row[at] })).filter((_, at) => at !== index && !columns[at].endsWith("_scenario"));
-      page.openableRows(body, (at) => page.openDesign(at.dataset.row, known(rows[at.sectionRowIndex])))();
+      page.openableRows(body, (at) => page.openDesign(at.dataset.row))();
       for (const event of ["current", "card"]) page.events.on(`${event}.${id}`, () => markCurrent(body));
     }
     const rest = (most, kind) => (of > most ? page.element("span", { class: kind }, ` The first ${most} of ${page.count(of)} rows are shown.`) : null);

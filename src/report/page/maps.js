@@ -142,8 +142,7 @@
       const at = row * columns + column;
       const design = indices ? indices[at] : NO_DESIGN;
       if (design === NO_DESIGN || Number.isNaN(values[at])) return;
-      const entry = ({ name, unit }, value) => ({ name, unit, text: page.short(value), full: page.full(value) });
-      page.openDesign(String(design), [entry(map.x, map.x.values[column]), entry(map.y, map.y.values[row]), entry(map.value, values[at])]);
+      page.openDesign(String(design), [{ ...map.value, value: values[at] }]);
     };
     if (indices) svg.on("click", () => marker.attr("display") !== "none" && open(place)).classed("opens-card", true);
     stage.addEventListener("keydown", (event) => {
@@ -167,12 +166,8 @@
         return place && { letter: pin.letter, x: place[0], y: place[1] };
       });
       page.drawLetters(designs, pins.filter(Boolean), [MARGIN.left, MARGIN.top, WIDTH - MARGIN.right, HEIGHT - MARGIN.bottom]);
-      const row = page.state.current ?? page.state.card;
-      const ofRow = (name) => {
-        const column = page.front.byName.get(name);
-        return column && column.role === "design" && !column.words ? column.values[row] : null;
-      };
-      const current = page.front && row !== null ? placeOf(ofRow) : null;
+      const isChosen = (name) => page.front?.byName.get(name)?.role === "design" && !page.front.byName.get(name).words;
+      const current = placeOf((name) => (isChosen(name) ? page.currentValue(name) : null));
       if (current) designs.append("circle").attr("class", "current").attr("r", 6).attr("cx", current[0]).attr("cy", current[1]);
     };
     for (const event of ["current", "card", "pins"]) page.events.on(`${event}.map${figure.dataset.map}`, mark);
@@ -205,7 +200,7 @@
         const count = map.x.values.length * map.y.values.length;
         drawCells(figures[i], map, new Float64Array(numbers, 0, count), map.cells.indices ? new BigUint64Array(numbers, 8 * count, count) : null);
       } else if (map.picture) {
-        const picture = page.picture(map.picture);
+        const picture = page.picture(map.picture, `Map of ${map.value.name} over ${map.x.name} and ${map.y.name}`);
         figures[i].querySelector(".title-line").append(page.saveButtonsOf(`the map of ${map.value.name}`, `map-${map.value.name}`, () => picture));
         figures[i].append(picture);
       }

@@ -88,10 +88,10 @@
   const nameSample = () => {
     const { sample } = page;
     const text = page.byId("sample");
-    text.hidden = !cells.some((cell) => cell.behind);
+    text.hidden = !cells.some((cell) => cell.behind) && !page.stripHas(sample);
     if (text.hidden) return;
     const drawn = sample.rows < sample.of ? `, ${page.count(sample.rows)} drawn` : "";
-    text.replaceChildren(page.element("span", { class: "sample-dot", "aria-hidden": "true" }), `behind the front: a sample of ${page.count(sample.of)} feasible designs${drawn}`);
+    text.replaceChildren(page.element("span", { class: "sample-dot", "aria-hidden": "true" }), `${cells.length ? "behind" : "below"} the front: a sample of ${page.count(sample.of)} feasible designs${drawn}`);
   };
 
   const layout = () => {
@@ -101,12 +101,16 @@
     const hint = page.byId("matrix-hint");
     page.byId("matrix-section").hidden = false;
     cells = [];
-    box.replaceChildren();
-    nameSample();
+    page.leaveStrip();
     if (names.length < 2) {
       hint.textContent = names.length ? "Drag to select a range of values. Click near a design to open its card." : "";
-      return page.drawStrip(box, front.byName.get(names[0]));
+      page.keepFocus(box, () => {
+        box.replaceChildren();
+        page.drawStrip(box, front.byName.get(names[0]));
+      });
+      return nameSample();
     }
+    box.replaceChildren();
     hint.textContent = "Drag to select, click a point to open its card; with the keyboard, arrows go from point to point and Enter opens.";
     const width = page.layoutWidth(box);
     const across = names.length - 1;
@@ -365,11 +369,12 @@
   const showCurrent = () => {
     const row = page.state.current ?? page.state.card;
     for (const cell of cells) {
-      const [x, y] = row === null ? [NaN, NaN] : [cell.xScale(cell.x.values[row]), cell.yScale(cell.y.values[row])];
-      const shown = Number.isFinite(x) && Number.isFinite(y);
+      const [x, y] = [cell.xScale(page.currentValue(cell.x.name)), cell.yScale(page.currentValue(cell.y.name))];
+      const isWithin = (at) => at >= 0 && at <= size;
+      const shown = isWithin(x) && isWithin(y);
       cell.current.attr("display", shown ? null : "none");
       if (shown) cell.current.attr("cx", x).attr("cy", y);
-      cell.interval.attr("d", shown ? page.intervalPath(row, { ...cell, size }) : null);
+      cell.interval.attr("d", shown && row !== null ? page.intervalPath(row, { ...cell, size }) : null);
     }
   };
 

@@ -29,7 +29,6 @@
   const layout = () => {
     const { state, front } = page;
     const box = page.byId("parallel");
-    const focused = document.activeElement?.closest?.(".axis-head button")?.dataset.focus;
     axes = [];
     page.byId("parallel-section").hidden = !front.rows;
     if (!front.rows) return;
@@ -55,13 +54,15 @@
       stage.append(headOf(axis, xs.step()));
       axes.push(axis);
     }
-    box.replaceChildren(stage);
+    page.keepFocus(box, () => {
+      box.replaceChildren(stage);
+      page.oneStop(stage, ".axis-buttons button");
+    });
     nameCrowd();
     page.layoutLines({ canvas, width, height: HEIGHT, axes });
     syncBrushes();
     showPins();
     showCurrent();
-    if (focused) box.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
   };
 
   const addAxis = (axis) => {
@@ -121,7 +122,7 @@
     const button = (what, label, text, disabled, click, pressed = null) =>
       page.element("button", { type: "button", "aria-label": `${label} ${column.name}`, title: label, disabled, click, "aria-pressed": pressed, "data-focus": `${what} ${column.name}` }, text);
     const role = column.goal ? column.goal : column.role === "design" ? "input" : "";
-    const title = page.element("div", { class: "axis-name", title: `${column.doc || column.name}${column.unit ? ` [${column.unit}]` : ""}` }, page.breakable(column.name));
+    const title = page.element("div", { class: "axis-name", title: `${column.name}${column.unit ? ` [${page.unit(column.unit)}]` : ""}${column.doc ? `: ${column.doc}` : ""}` }, page.axisWords(column.name, column.unit));
     const words = [column.unit ? `[${page.unit(column.unit)}]` : "", role].filter(Boolean);
     const sub = page.element("div", { class: "axis-unit" }, words.flatMap((word, i) => [i ? " " : "", page.element("span", {}, word)]));
     const buttons = page.element(
@@ -181,17 +182,12 @@
   };
 
   const showCurrent = () => {
-    const row = page.state.current ?? page.state.card;
     if (!svg) return;
     svg.selectAll(".current-line").remove();
-    for (const { column, scale, dot } of axes) {
-      const y = row === null ? NaN : scale(column.values[row]);
-      dot.attr("display", Number.isFinite(y) ? null : "none");
-      if (Number.isFinite(y)) dot.attr("cy", y);
-    }
-    if (row === null) return;
-    const line = d3.line((axis) => axis.x, (axis) => axis.scale(axis.column.values[row])).defined((axis) => Number.isFinite(axis.column.values[row]));
-    svg.insert("path", ".axis").attr("class", "current-line").attr("d", line(axes));
+    const places = axes.map((axis) => [axis.x, axis.scale(page.currentValue(axis.column.name))]);
+    const isWithin = ([, y]) => y >= 0 && y <= HEIGHT;
+    axes.forEach(({ dot }, at) => dot.attr("display", isWithin(places[at]) ? null : "none").attr("cy", isWithin(places[at]) ? places[at][1] : 0));
+    if (places.some(isWithin)) svg.insert("path", ".axis").attr("class", "current-line").attr("d", d3.line().defined(isWithin)(places));
   };
 
   // Pinned designs as lines with their letters.

@@ -26,17 +26,30 @@
   const askedSet = () => (page.changeList ? page.changeList() : []);
   const isOf = (pin, set) => String(pin.set) === String(set);
 
-  page.letterOf = (row) => pins.find((pin) => pin.design === page.designOf(row) && isOf(pin, shownSet()))?.letter;
-  page.isPinned = (row) => pins.some((pin) => pin.design === page.designOf(row) && isOf(pin, shownSet()));
+  // Of a row of the front, or of a design that is known without being on it.
+  const pinnedOf = (of) => {
+    const { design, set } = typeof of === "number" ? { design: page.designOf(of), set: shownSet() } : of;
+    return pins.find((pin) => pin.design === design && isOf(pin, set));
+  };
+  page.letterOf = (row) => pinnedOf(row)?.letter;
+  page.isPinned = (of) => Boolean(pinnedOf(of));
 
-  page.pin = (row) => {
-    if (page.isPinned(row)) pins = pins.filter((pin) => !(pin.design === page.designOf(row) && isOf(pin, shownSet())));
-    else if (page.canPin()) pins = [...pins, pinOf(row)];
+  page.pin = (of) => {
+    const pinned = pinnedOf(of);
+    return pinned ? page.unpin(pinned) : add(typeof of === "number" ? pinOf(of) : knownPin(of));
+  };
+  const knownPin = ({ design, set, values }, letter = free()) => ({ design, letter, values, set });
+
+  const add = (pin) => {
+    if (!page.canPin()) return;
+    pins = [...pins, pin];
+    page.say(`design ${pin.design} is pinned as ${pin.letter}, ${pins.length} of ${MOST}`);
     page.events.call("pins");
   };
 
   page.unpin = (pin) => {
     pins = pins.filter((other) => other !== pin);
+    page.say(`design ${pin.design} is no longer pinned`);
     page.events.call("pins");
   };
 
@@ -45,7 +58,7 @@
   page.pinsText = () => [...pins, ...awaited].map((pin) => `${pin.design}${changesOf(pin)}`).join(",");
   page.readPins = (text) => {
     pins = [];
-    const isHere = ({ design, set }) => (isOf({ set }, askedSet()) ? page.awaits() || (page.front && page.rowOf(design) >= 0) : Boolean(page.askPin));
+    const isHere = ({ design, set }) => (isOf({ set }, askedSet()) ? page.awaits() || (page.front && (page.rowOf(design) >= 0 || page.knownOf(design))) : Boolean(page.askPin));
     const given = [...new Set((text || "").split(",").filter(Boolean))].map((entry) => {
       const [design, changes] = entry.split("~");
       return { design, set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };
@@ -74,10 +87,11 @@
   // for these to come back.
   const adoptAwaited = () => {
     const isShown = (pin) => page.front && isOf(pin, shownSet());
-    const found = awaited.filter((pin) => isShown(pin) && page.rowOf(pin.design) >= 0);
+    const found = awaited.filter((pin) => isShown(pin) && (page.rowOf(pin.design) >= 0 || page.knownOf(pin.design)));
     awaited = awaited.filter((pin) => !found.includes(pin) && (page.awaits() || !isShown(pin)));
     for (const { design, letter } of found.slice(0, MOST - pins.length)) {
-      const pin = pinOf(page.rowOf(design));
+      const row = page.rowOf(design);
+      const pin = row >= 0 ? pinOf(row) : knownPin(page.knownOf(design));
       pins = [...pins, isFree(letter) ? { ...pin, letter } : pin];
     }
     if (found.length) pins.sort((a, b) => d3.ascending(a.letter, b.letter));
@@ -106,7 +120,8 @@
 
   const changed = (pin) => (pin.set.length ? page.element("div", { class: "unit", title: pin.set.join("\n") }, `${pin.set.length} change${pin.set.length > 1 ? "s" : ""}`) : null);
 
-  const draw = () => {
+  const draw = () => page.keepFocus(page.byId("pins"), build, "#splom [tabindex]");
+  const build = () => {
     const section = page.byId("pins");
     section.hidden = !pins.length;
     if (!pins.length) return section.replaceChildren();
@@ -116,16 +131,14 @@
     const rows = [...names].sort((a, b) => a[1] - b[1]).map(([name]) => name);
     const open = (pin) => {
       const row = isOf(pin, shownSet()) ? page.rowOf(pin.design) : -1;
-      if (row >= 0) return page.openCard(row);
-      const known = [...pin.values].filter(([, { role }]) => role in order).map(([name, { value, text, unit }]) => ({ name, unit, text, full: page.full(value) }));
-      page.openKnown(pin.design, isOf(pin, shownSet()) ? [] : pin.set, known);
+      return row >= 0 ? page.openCard(row) : page.openKnown(pin);
     };
     const head = (pin) =>
       page.element(
         "th",
         { scope: "col", class: "number" },
-        page.element("button", { type: "button", class: "pin-name", click: () => open(pin), title: "Open its card" }, page.element("span", { class: "pin-letter" }, pin.letter), ` ${pin.design}`),
-        page.element("button", { type: "button", class: "back no-print", "aria-label": `Unpin design ${pin.design}`, title: "Unpin", click: () => page.unpin(pin) }, "×"),
+        page.element("button", { type: "button", class: "pin-name", "data-focus": `pin ${pin.letter}`, click: () => open(pin), title: "Open its card" }, page.element("span", { class: "pin-letter" }, pin.letter), ` ${pin.design}`),
+        page.element("button", { type: "button", class: "back no-print", "data-focus": `unpin ${pin.letter}`, "aria-label": `Unpin design ${pin.design}`, title: "Unpin", click: () => page.unpin(pin) }, "×"),
         changed(pin),
       );
     const same = page.element("input", { type: "checkbox", id: "only-differences", checked: section.dataset.only === "yes", change: (event) => ((section.dataset.only = event.target.checked ? "yes" : "no"), draw()) });

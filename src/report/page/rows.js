@@ -1,4 +1,4 @@
-// Lines of a table that open something: one stop for the tab key, arrows go from line to line, Enter and a click open.
+// Lines of a table that open something: one stop for the tab key, arrows go from line to line and to the buttons above, Enter and a click open.
 page.openableRows = (body, open) => {
   const lineOf = (event) => event.target.closest("tr[data-row]");
   const stopAt = (line) => {
@@ -12,7 +12,8 @@ page.openableRows = (body, open) => {
     if (!line || event.target !== line) return;
     const lines = [...body.querySelectorAll("tr[data-row]")];
     const at = lines.indexOf(line);
-    const next = { ArrowDown: lines[at + 1], ArrowUp: lines[at - 1], Home: lines[0], End: lines[lines.length - 1] };
+    const above = body.parentNode.querySelector("thead button");
+    const next = { ArrowDown: lines[at + 1], ArrowUp: at > 0 ? lines[at - 1] : above, Home: lines[0], End: lines[lines.length - 1] };
     if (event.key in next) next[event.key]?.focus();
     else if (event.key === "Enter") open(line);
     else return;
@@ -23,7 +24,7 @@ page.openableRows = (body, open) => {
   return (line = null) => stopAt(line ?? body.querySelector("tr[data-row]"));
 };
 
-// What the arrow keys reach in a plot is said aloud, by those who hear the page.
+// What the arrow keys reach in a plot is said aloud.
 page.announce = (row) => {
   const { front, state } = page;
   if (row === null || row === undefined) return;
@@ -31,5 +32,5 @@ page.announce = (row) => {
     const column = front.byName.get(name);
     return `${name} ${page.valueText(column, row)}${column.words ? "" : ` ${page.unit(column.unit)}`}`;
   });
-  page.byId("said").textContent = `design ${page.designOf(row)}${row === page.chosenRow() ? `, ${page.chosenWord()}` : ""}: ${said.join(", ")}`;
+  page.say(`design ${page.designOf(row)}${row === page.chosenRow() ? `, ${page.chosenWord()}` : ""}: ${said.join(", ")}`);
 };

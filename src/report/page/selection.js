@@ -13,6 +13,7 @@
     cells: new Map(), // "x*y" -> { x, y, xRange, yRange }
     current: null, // row under the pointer or reached by the arrow keys
     card: null, // row of the open card
+    known: null, // the design of the open card if it is not on the front, see known.js
     awaited: null, // design whose card opens, or is shown anew, once a front has it
     theme: null, // "light", "dark" or null: as the system says
     columns: "", // names of all columns, to know another study by

@@ -34,11 +34,12 @@
   // Words have no order: which of them are feasible too.
   const wordsText = (slice, columns) => {
     const here = slice.at.indexOf(slice.own);
-    const others = slice.words.map((word, i) => ({ word, i })).filter(({ i }) => i !== here);
+    const words = slice.words.map(page.wordText);
+    const others = words.map((word, i) => ({ word, i })).filter(({ i }) => i !== here);
     const good = others.filter(({ i }) => slice.feasible[i]).map(({ word }) => word);
     const told = good.length > 6 ? `${page.count(good.length)} of ${page.count(others.length)} others` : good.join("; ");
     const bad = others.find(({ i }) => !slice.feasible[i]);
-    const lines = [`now ${slice.words[here]}`, slice.feasible[here] ? `feasible too: ${told || "none of the others"}` : "this design is infeasible"];
+    const lines = [`now ${words[here]}`, slice.feasible[here] ? `feasible too: ${told || "none of the others"}` : "this design is infeasible"];
     return bad ? [...lines, `with ${bad.word}: ${failsAt(slice, columns, bad.i)}`] : lines;
   };
 
@@ -133,7 +134,7 @@
       else svg.append("path").attr("class", "limit-beyond").attr("d", arrow(isAbove)).append("title").text(`limit of ${column.name}: ${page.short(limit)}, beyond this chart`);
     }
     const path = d3.line((_, i) => x(slice.at[i]), (value) => y(value)).defined(Number.isFinite);
-    if (slice.words) values.forEach((value, i) => Number.isFinite(value) && svg.append("circle").attr("class", "slice-dot").attr("r", 2.5).attr("cx", x(slice.at[i])).attr("cy", y(value)).append("title").text(`${slice.words[i]}: ${page.short(value)}`));
+    if (slice.words) values.forEach((value, i) => Number.isFinite(value) && svg.append("circle").attr("class", "slice-dot").attr("r", 2.5).attr("cx", x(slice.at[i])).attr("cy", y(value)).append("title").text(`${page.wordText(slice.words[i])}: ${page.short(value)}`));
     else svg.append("path").attr("class", "slice-line").attr("d", path(values));
     // Where another scenario becomes the worst.
     line.scenarios.forEach((scenario, i) => {

@@ -5,7 +5,7 @@
   const start = async () => {
     await page.decode();
     if (page.data.kind === "live") return page.startLive();
-    const row = page.readAddress();
+    const open = page.readAddress();
     page.startTheme();
     document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
     page.startOverview();
@@ -38,13 +38,13 @@
     page.startStudy();
     await page.startMaps();
     page.showExplained();
-    if (row !== null) page.openCard(row);
+    open?.();
     page.timings.complete = performance.now();
   };
 
   document.querySelector("[data-skip]").addEventListener("click", (event) => {
     event.preventDefault();
-    // The first of these that is there; the last one is around the others.
+    // The first of these that the page has. #main contains the others.
     const target = ["#splom [tabindex]", "#figures:not([hidden])", "#main"].map((it) => document.querySelector(it)).find(Boolean);
     if (!target.hasAttribute("tabindex")) target.setAttribute("tabindex", "-1");
     target.focus();

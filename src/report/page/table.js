@@ -40,7 +40,7 @@
   const sortBy = (name) => {
     sort = { name, down: sort.name === name ? !sort.down : false };
     update();
-    heads.querySelector(`[data-column="${CSS.escape(name)}"] button`)?.focus();
+    page.say(`sorted by ${name}, ${sort.down ? "the largest" : "the least"} first`);
   };
 
   const update = () => {
@@ -48,22 +48,23 @@
     const head = (column) => {
       const direction = sort.name !== column.name ? "none" : sort.down ? "descending" : "ascending";
       const arrow = { none: "", ascending: " ↑", descending: " ↓" }[direction];
-      const button = page.element("button", { type: "button", click: () => sortBy(column.name), title: column.doc }, column === page.front.index ? "design" : column.name, arrow);
+      const button = page.element("button", { type: "button", "data-focus": `sort ${column.name}`, click: () => sortBy(column.name), title: column.doc }, column === page.front.index ? "design" : column.name, arrow);
       return page.element("th", { scope: "col", "aria-sort": direction, "data-column": column.name, class: column.words ? "" : "number" }, button, column.unit ? page.element("span", { class: "unit" }, page.unit(column.unit)) : null);
     };
-    heads.replaceChildren(...columns.map(head));
+    page.keepFocus(heads, () => heads.replaceChildren(...columns.map(head)));
     const rows = sortedRows();
     const knee = page.chosenRow();
     const line = (row) => {
       const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index ? [page.letterOf(row) ? page.element("span", { class: "pin-letter" }, page.letterOf(row)) : null, row === knee ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : null].filter(Boolean) : []);
-      return page.element("tr", { "data-row": row, class: row === knee ? "is-knee" : "", tabindex: -1, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
+      return page.element("tr", { "data-row": row, "data-focus": `row ${page.designOf(row)}`, class: row === knee ? "is-knee" : "", tabindex: -1, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
     };
-    body.replaceChildren(...rows.slice(0, MOST).map(line));
+    page.keepFocus(body, () => body.replaceChildren(...rows.slice(0, MOST).map(line)));
     const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown; the CSV has them all.` : "");
     const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
     note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
     page.byId("csv").disabled = !rows.length;
     oneStop();
+    page.oneStop(heads, "button", body.querySelector("tr"));
     markCurrent();
   };
 

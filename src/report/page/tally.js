@@ -26,7 +26,7 @@
       return page.element("tr", { "data-reason": text }, page.element("th", { scope: "row" }, text), page.element("td", { class: "muted" }, kind), page.element("td", { class: "bar-cell" }, meter), page.element("td", { class: "number" }, page.percent(failed, sampled)), page.element("td", { class: "number" }, constraint ? page.percent(only, sampled) : "–"));
     };
     const head = [["reason", ""], ["kind", ""], ["share", ""], ["fails", "number"], ["alone", "number"]].map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
-    const table = page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Reasons and their shares" }, page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line))));
+    const table = page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": `${title}: reasons and their shares` }, page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line))));
     const heading = page.element("h2", { id }, title);
     section.append(
       heading,

@@ -148,6 +148,12 @@
     update();
     page.events.on("choice.weigh", () => page.schedule("weigh", update));
     page.events.on("choice.goals", () => page.schedule("goals", page.showGoals));
+    const words = () => (page.isWeighed() ? `first by weights: design ${page.designOf(page.chosenRow())}` : "equal weights");
+    let said = words();
+    const say = page.afterPause(500, () => {
+      if (page.front.rows && words() !== said) page.say((said = words()));
+    });
+    page.events.on("choice.said", say);
     page.events.on("front.weigh", () => page.schedule("weigh", update));
   };
 }

@@ -1,12 +1,12 @@
 // The drawing in a design's card: of models that are known, with a slider where the study has several ratios.
 {
   const DRAWINGS = {
-    "metal-cvt": (row, ratio) => page.drawVariator(row, true, ratio),
-    "rubber-cvt": (row, ratio) => page.drawVariator(row, false, ratio),
-    "flat-belt": (row) => page.drawFlatBelt(row),
-    "timing-belt": (row) => page.drawTimingBelt(row),
-    "pulley-load": (row) => page.drawPulley(row, false),
-    pulley: (row) => page.drawPulley(row, true),
+    "metal-cvt": (of, ratio) => page.drawVariator(of, true, ratio),
+    "rubber-cvt": (of, ratio) => page.drawVariator(of, false, ratio),
+    "flat-belt": (of) => page.drawFlatBelt(of),
+    "timing-belt": (of) => page.drawTimingBelt(of),
+    "pulley-load": (of) => page.drawPulley(of, false),
+    pulley: (of) => page.drawPulley(of, true),
   };
   const STEPS = 200;
   page.knownSections = new WeakMap(); // front -> row -> outline, of a study in work
@@ -26,35 +26,40 @@
 
   // What is told later of a design, such as the section of a pulley or what formulas give: its drawing is made anew.
   let redraw = null;
-  page.knowMore = (row, { section, givens }) => {
-    if (section) page.knownSections.set(page.front, new Map([[row, section]]));
-    if (givens && Object.keys(givens).length) page.knownGivens.set(page.front, new Map([[row, givens]]));
-    else if (!section) return;
-    redraw?.(row);
+  page.knowMore = (of, { section, givens, described }) => {
+    const hasGivens = givens && Object.keys(givens).length > 0;
+    if (typeof of !== "number") Object.assign(of, { section, inputs: described }, hasGivens ? { givens } : {});
+    else {
+      if (section) page.knownSections.set(page.front, new Map([[of, section]]));
+      if (hasGivens) page.knownGivens.set(page.front, new Map([[of, givens]]));
+      else if (!section) return;
+    }
+    redraw?.(of);
   };
 
-  page.driveSection = (row) => {
+  // `of`: a row of the front, or a design that is known without being on it.
+  page.driveSection = (of) => {
     const draw = DRAWINGS[page.data.model && page.data.model.drive];
-    if (!draw || !page.front) return null;
-    const ratio = page.ratioOf(row);
+    if (!draw) return null;
+    const ratio = page.ratioOf(of);
     const ends = page.data.model.drive.endsWith("-cvt") && ratio ? ratio.ends : null;
     let shown = ratio ? ratio.first : null;
     if (ends && ratioShown !== null && ratioShown >= ends[0] && ratioShown <= ends[1]) shown = ratioShown;
-    const first = draw(row, shown);
+    const first = draw(of, shown);
     const title = page.element("h3", { id: "drive-title" }, "Drawn to scale");
     const section = (...children) => page.element("section", { class: "drive-section", "data-testid": "drive", "aria-labelledby": "drive-title" }, page.element("div", {}, title), children);
     if (first.none) return section(page.element("p", { class: "hint" }, `Not drawn: ${first.none}.`));
     // An input that a formula gives may be nowhere on the page.
     if (first.missing) {
       const made = section(page.element("p", { class: "hint" }, `Not drawn: the page does not know ${first.missing.join(", ")} of this design.`));
-      redraw = (of) => of === row && made.isConnected && made.replaceWith(page.driveSection(row));
+      redraw = (told) => told === of && made.isConnected && made.replaceWith(page.driveSection(of));
       return made;
     }
     const stage = page.element("div", { class: "stage drive-stage" }, first.node);
     const rest = page.element("div", {}, parts(first).slice(1).filter(Boolean));
     const show = (value) => {
       shown = ratioShown = value;
-      const next = draw(row, value);
+      const next = draw(of, value);
       if (next.none) return;
       stage.replaceChildren(next.node);
       rest.replaceChildren(...parts(next).slice(1).filter(Boolean));
@@ -76,9 +81,9 @@
       input.addEventListener("keydown", (event) => event.key.startsWith("Arrow") && event.stopPropagation());
       slider = page.element("div", { class: "drive-slider no-print" }, page.element("label", { for: "drive-ratio" }, "ratio"), input, said);
     }
-    redraw = (of) => of === row && stage.isConnected && show(shown);
+    redraw = (told) => told === of && stage.isConnected && show(shown);
     const made = section(slider, stage, rest);
-    page.saveButtons(title, `drive-${page.designOf(row)}`);
+    page.saveButtons(title, `drive-${page.numberOfDesign(of)}`);
     return made;
   };
 }

@@ -1,6 +1,6 @@
 // A flat belt over two pulleys.
-page.drawFlatBelt = (row) => {
-  const reader = page.readerOf(row);
+page.drawFlatBelt = (of) => {
+  const reader = page.readerOf(of);
   const names = ["driver_diameter_mm", "driven_diameter_mm", "centre_distance_mm", "belt_width_mm", "belt_thickness_mm"];
   const [driver, driven, centres, width, thickness] = names.map(reader.number);
   if (reader.missing.length) return { missing: reader.missing };

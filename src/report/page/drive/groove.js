@@ -6,9 +6,9 @@
   const DEPTH = 0.4;
 
   // The section of a design as lines of (z, r), if the page knows it.
-  const outlineOf = (row) => {
+  const outlineOf = (of) => {
     const { sections } = page.data;
-    const found = page.knownSections.get(page.front)?.get(row) ?? sections?.outlines[sections.of[page.designOf(row)]];
+    const found = of.section ?? page.knownSections.get(page.front)?.get(of) ?? sections?.outlines[sections.of[page.numberOfDesign(of)]];
     return found ? found.map((part) => d3.range(0, part.length, 2).map((i) => [part[i], part[i + 1]])) : null;
   };
 
@@ -33,8 +33,8 @@
     return { top: top ?? middle + 2 * above * tangent, above, below: above, rim: 0.06 * middle, bore: 0.3 * radius, bracket: null, known: false };
   };
 
-  page.drawPulley = (row, whole) => {
-    const reader = page.readerOf(row);
+  page.drawPulley = (of, whole) => {
+    const reader = page.readerOf(of);
     const [radius, groove, count, wrap] = ["mean_radius_mm", "groove_angle_deg", "groove_count", "wrap_angle_deg"].map(reader.number);
     const tangent = Math.tan((groove * Math.PI) / 360);
     const { top, above, below, rim, bore, bracket, known } = dimensions(reader, whole, radius, tangent);
@@ -42,7 +42,7 @@
     const half = (height) => Math.max(0, top / 2 - (above - height) * tangent);
     const outer = radius + above + rim;
     const floor = radius - below;
-    const outline = whole ? outlineOf(row) : null;
+    const outline = whole ? outlineOf(of) : null;
     const [least, most] = outline ? d3.extent(outline.flat(), ([z]) => z) : [0, 0];
     const land = outline ? 0.18 * top : reader.chosen(count > 1 ? "distance between the grooves" : "thickness of the rim beside the groove", 0.18 * top, `${page.short(0.18 * top)} mm, 0.18 of the groove's width`);
     const under = 0.12 * outer;

@@ -16,8 +16,8 @@
     });
   };
 
-  page.drawTimingBelt = (row) => {
-    const reader = page.readerOf(row);
+  page.drawTimingBelt = (of) => {
+    const reader = page.readerOf(of);
     const names = ["tip_radius_mm", "land_half_angle_deg", "space_half_angle_deg", "pressure_angle_deg", "teeth_in_mesh", "tight_span_angle_deg", "slack_span_angle_deg", "pitch_line_mm", "cord_area_mm2", "belt_width_mm"];
     const [tip, land, space, pressure, mesh, tight, slack, line, area, width] = names.map(reader.number);
     if (reader.missing.length) return { missing: reader.missing };
@@ -28,7 +28,7 @@
     const back = area / width;
     reader.notes.push("both spans, which are cut off, and the bore");
     if (Math.abs(360 / pitch - Math.round(360 / pitch)) > 0.02) reader.notes.push(`the pulley's number of teeth, ${page.short(360 / pitch)} by its angles`);
-    const lifted = page.quantityOf("boundary_tooth", row);
+    const lifted = page.quantityOf("boundary_tooth", of);
     // The arc is symmetrical about the top, the tight side on the right: tooth 1 is there.
     const first = 90 - ((mesh - 1) * pitch) / 2;
     const radius = tip + line;

@@ -31,18 +31,18 @@
   };
 
   // The ratio: its ends, and the one that is shown.
-  page.ratioOf = (row) => {
-    const ratio = page.quantityOf("ratio", row);
+  page.ratioOf = (of) => {
+    const ratio = page.quantityOf("ratio", of);
     if (!ratio) return null;
     const known = ratio.from === "varied" && ratio.least < ratio.largest;
     return { ...ratio, ends: known ? [ratio.least, ratio.largest] : null, first: known ? Math.max(ratio.least, Math.min(ratio.largest, 1)) : ratio.value };
   };
 
-  page.drawVariator = (row, metal, shown) => {
-    const reader = page.readerOf(row);
+  page.drawVariator = (of, metal, shown) => {
+    const reader = page.readerOf(of);
     const [centres, length, groove] = ["centre_distance_mm", "belt_length_mm", "groove_angle_deg"].map(reader.number);
     const belt = beltOf(reader, metal);
-    const ratio = page.ratioOf(row);
+    const ratio = page.ratioOf(of);
     if (!ratio || reader.missing.length) return { missing: ratio ? reader.missing : ["ratio", ...reader.missing] };
     const at = (value) => page.pitchRadii(value, length, centres);
     const radii = at(shown);

@@ -91,7 +91,7 @@
   // The views, once there is something to see.
   const begin = () => {
     started = true;
-    const row = page.readAddress();
+    const open = page.readAddress();
     page.applySelection();
     page.startBar();
     page.startPins();
@@ -106,7 +106,7 @@
     page.startCard();
     page.startAround();
     page.startAddress();
-    if (row !== null) page.openCard(row);
+    open?.();
   };
 
   // What stands around the plots can wait until nothing moves.

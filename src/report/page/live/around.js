@@ -4,13 +4,15 @@
 
   const ask = async () => {
     const section = page.byId("around");
+    // Of other changes only what is on the card is known.
+    const known = page.state.known && String(page.state.known.set) === String(page.shownSet) ? page.state.known : null;
     const row = page.state.card ?? (page.front ? page.chosenRow() : null);
     if (asking) asking.abort();
     if (page.state.awaited !== null) return null;
     if (row === null || row === undefined) return (section.hidden = true);
     section.hidden = false;
-    const design = page.designOf(row);
-    const title = `Around design ${design}${page.state.card === null ? ` (${page.chosenWord()})` : ""}`;
+    const design = known ? known.design : page.designOf(row);
+    const title = `Around design ${design}${page.state.card === null && !known ? ` (${page.chosenWord()})` : ""}`;
     const box = section.querySelector(".around-box") || page.element("div", { class: "around-box" });
     section.replaceChildren(page.element("h2", { id: "around-title" }, title), box);
     if (!box.hasChildNodes()) box.append(page.element("p", { class: "hint" }, "being computed"));
@@ -26,16 +28,16 @@
 
   // All outputs of the design of the card.
   const askOutputs = async () => {
-    const row = page.state.card;
+    const of = () => page.state.card ?? page.state.known;
+    const asked = of();
     const box = page.byId("all-outputs");
-    if (row === null || !box) return;
-    const set = page.changeList();
-    const design = page.designOf(row);
+    if (asked === null || !box) return;
+    const design = page.numberOfDesign(asked);
     try {
-      const told = await page.askOnce("/design", { set, design });
-      if (page.state.card === null || page.designOf(page.state.card) !== design || !page.byId("all-outputs")) return;
-      page.knowMore(row, told);
-      const known = new Set(page.front.shown.map((column) => column.name));
+      const told = await page.askOnce("/design", { set: asked.set ?? page.changeList(), design });
+      if (of() === null || page.numberOfDesign(of()) !== design || of().set !== asked.set || !page.byId("all-outputs")) return;
+      page.knowMore(of(), told);
+      const known = new Set(asked.values ? asked.values.keys() : page.front.shown.map((column) => column.name));
       const lines = told.outputs.filter((output) => !known.has(output.name)).map((output) =>
         page.element("tr", {}, page.element("th", { scope: "row", title: output.doc }, page.breakable(output.name)), page.element("td", { class: "number" }, page.element("span", { "data-name": output.name, "data-value": page.full(output.value), title: page.full(output.value) }, page.short(output.value)), page.element("span", { class: "unit" }, output.value === null ? "" : ` ${page.unit(output.unit)}`)), page.element("td", { class: "scenario" }, output.scenario === null ? "" : `#${output.scenario}`)),
       );

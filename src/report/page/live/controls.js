@@ -39,7 +39,7 @@
       write(chosen, part);
     });
     slider.addEventListener("change", page.endGesture);
-    const back = page.element("button", { type: "button", class: "back", title: `Back to ${page.short(original)}`, "aria-label": `${name}, ${label}: back to ${page.short(original)}`, click: () => write(original, null) }, "↺");
+    const back = page.element("button", { type: "button", class: "back", title: `Back to ${page.short(original)}`, "aria-label": `${name}, ${label}: back to ${page.short(original)}`, click: () => (field.focus(), write(original, null)) }, "↺");
     const line = page.element("div", { class: "control" }, page.element("label", { for: id }, label), slider, page.element("span", { class: "entry" }, field, page.element("span", { class: "unit" }, page.unit(unit)), back));
     controls.push({
       part,
@@ -217,22 +217,23 @@
     box.dataset.parts = String(wanted);
     for (let i = controls.length - 1; i >= 0; i--) if (controls[i].added) controls.splice(i, 1);
     const before = controls.length;
-    box.replaceChildren(
-      ...wanted.map((part) => {
-        const [table, name, key] = part.split(".");
-        const remove = page.element("button", { type: "button", class: "back", title: "Take it away", "aria-label": `${name} ${BOUNDS[key]}: take it away`, click: () => page.change({ [part]: null }) }, "×");
-        return page.element("div", { class: "block" }, heading({ name, doc: "a bound that was added here" }, remove), added(`${table}.${name}`, key));
-      }),
-    );
+    const block = (part) => {
+      const [table, name, key] = part.split(".");
+      const remove = page.element("button", { type: "button", class: "back", title: "Take it away", "aria-label": `${name} ${BOUNDS[key]}: take it away`, click: () => page.change({ [part]: null }) }, "×");
+      return page.element("div", { class: "block" }, heading({ name, doc: "a bound that was added here" }, remove), added(`${table}.${name}`, key));
+    };
+    page.keepFocus(box, () => box.replaceChildren(...wanted.map(block)), ".controls-buttons button:not(:disabled)");
     controls.slice(before).forEach((it) => (it.added = true));
   };
 
   const sync = () => {
     syncAdded();
     controls.forEach((it) => it.sync());
-    page.byId("undo").disabled = !page.canUndo();
-    page.byId("redo").disabled = !page.canRedo();
-    page.byId("reset").disabled = page.changes().size === 0;
+    page.keepFocus(document.querySelector(".controls-buttons"), () => {
+      page.byId("undo").disabled = !page.canUndo();
+      page.byId("redo").disabled = !page.canRedo();
+      page.byId("reset").disabled = page.changes().size === 0;
+    });
   };
 
   page.startControls = () => {

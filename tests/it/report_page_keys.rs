@@ -1,0 +1,130 @@
+//! Pages with the keyboard, and for those who hear them: the focus stays where it was, rows of buttons are one stop, what changes is said.
+
+use crate::browser::Browser;
+use crate::explore_page::{COUNT, Explored, SMALL, answered, axe, broken_rules, open, study_file};
+use crate::report_page::Swept;
+
+/// What has the focus, by its name or its text.
+fn focused(browser: &mut Browser) -> String {
+    browser.text("((it) => it.dataset.focus || it.id || it.getAttribute('aria-label') || it.dataset.x || it.tagName)(document.activeElement)")
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn the_focus_stays_where_it_was_when_a_part_of_the_page_is_drawn_anew() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    let press = |browser: &mut Browser, selector: &str| {
+        browser.evaluate(&format!("document.querySelector({selector:?}).focus()"));
+        browser.key("Enter", 13);
+        browser.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+    };
+    // Chips of selections, until none is left.
+    browser.evaluate("beltspace.brushAxis('reserve', [1.45, 1.62]); beltspace.brushAxis('slip_margin', [0.1, 0.2])");
+    browser.wait("document.querySelectorAll('#chips button').length === 2");
+    press(&mut browser, "#chips button");
+    assert!(focused(&mut browser).starts_with("Remove the selection slip_margin"), "{}", focused(&mut browser));
+    press(&mut browser, "#chips button");
+    assert_ne!(focused(&mut browser), "BODY");
+    // Pins: what is compared, and a pin that is taken away.
+    browser.evaluate("[0, 1, 2].forEach((row) => beltspace.page.pin(row))");
+    browser.evaluate("document.querySelector('#only-differences').focus()");
+    browser.key(" ", 32);
+    assert_eq!(focused(&mut browser), "only-differences");
+    press(&mut browser, "[data-focus='unpin B']");
+    assert_ne!(focused(&mut browser), "BODY");
+    let said = browser.text("document.querySelector('#said').textContent");
+    assert!(said.ends_with("is no longer pinned"), "{said}");
+    // The same control, where it is still there.
+    press(&mut browser, "[data-focus='unpin C']");
+    press(&mut browser, "[data-focus='unpin A']");
+    assert_ne!(focused(&mut browser), "BODY", "without any pin the plots have it");
+    // A column is sorted by the same button once more.
+    press(&mut browser, "[data-focus='sort axial_force_upper_N']");
+    assert_eq!(focused(&mut browser), "sort axial_force_upper_N");
+    assert_eq!(browser.text("document.querySelector('#said').textContent"), "sorted by axial_force_upper_N, the least first");
+    press(&mut browser, "[data-focus='sort axial_force_upper_N']");
+    assert_eq!(browser.text("document.querySelector('[data-column=axial_force_upper_N]').ariaSort"), "descending");
+    // An axis goes to the left until it is there; then its other buttons have the focus.
+    let axis = browser.text("beltspace.state.parallel[1]");
+    press(&mut browser, &format!("[data-focus='left {axis}']"));
+    assert_eq!(browser.text("beltspace.state.parallel[0]"), axis);
+    assert!(focused(&mut browser).ends_with(&axis), "{}", focused(&mut browser));
+    // Buttons of all axes are one stop, and so is a table with its head; arrows go on.
+    for stop in ["#parallel .axis-buttons button", "#designs :is(button, tr)"] {
+        assert_eq!(browser.number(&format!("document.querySelectorAll({:?}).length", format!("{stop}[tabindex='0']"))), 1.0, "{stop}");
+    }
+    browser.evaluate("document.querySelector('#designs tbody tr').focus()");
+    browser.key("ArrowUp", 38);
+    browser.key("ArrowRight", 39);
+    assert_eq!(browser.number("[...document.querySelectorAll('#designs thead button')].indexOf(document.activeElement)"), 1.0);
+    browser.key("ArrowDown", 40);
+    assert_eq!(browser.evaluate("document.activeElement === document.querySelector('#designs tbody tr')"), true);
+    browser.key("ArrowUp", 38);
+    browser.key("End", 35);
+    assert_eq!(browser.evaluate("document.activeElement === [...document.querySelectorAll('#designs thead button')].pop()"), true);
+    // Who goes through cards hears which one it is, and which design weights put first.
+    browser.evaluate("beltspace.openCard(3)");
+    press(&mut browser, "#card-next");
+    let next = browser.text("`design ${beltspace.page.designOf(4)}`");
+    assert!(browser.text("document.querySelector('#said').textContent").starts_with(&next));
+    browser.evaluate("beltspace.page.setWeight('axial_force_upper_N', 90)");
+    browser.wait("document.querySelector('#said').textContent === `first by weights: design ${beltspace.page.designOf(beltspace.page.chosenRow())}`");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_live_page_keeps_the_focus_and_a_press_while_the_front_changes() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    for value in ["0.05", "0.1"] {
+        browser.evaluate(COUNT);
+        browser.evaluate(&format!("beltspace.change({{ 'constraints.slip_margin.min': '{value}' }})"));
+        answered(&mut browser);
+    }
+    // Undo, until there is nothing left to undo.
+    for _ in 0..2 {
+        browser.evaluate(COUNT);
+        browser.evaluate("document.querySelector('#undo').focus()");
+        browser.key("Enter", 13);
+        answered(&mut browser);
+    }
+    assert_eq!(browser.evaluate("document.querySelector('#undo').disabled"), true);
+    assert_eq!(focused(&mut browser), "redo");
+    // A bound that was added, and taken away.
+    browser.evaluate("beltspace.change({ 'constraints.reserve.max': '1.6', 'constraints.band_count.max': '12' })");
+    browser.evaluate("document.querySelector('#added [aria-label$=\"take it away\"]').focus()");
+    browser.key("Enter", 13);
+    assert_ne!(focused(&mut browser), "BODY");
+    assert_eq!(browser.number("document.querySelectorAll('#added [aria-label$=\"take it away\"]').length"), 1.0);
+    answered(&mut browser);
+    browser.wait("beltspace.timings.counted === beltspace.timings.answered");
+    // A new front comes while a button of the card is held down.
+    browser.evaluate("beltspace.openCard(0)");
+    let [left, top, width, height] = browser.rectangle("#card-pin");
+    browser.mouse("mouseMoved", left + width / 2.0, top + height / 2.0);
+    browser.mouse("mousePressed", left + width / 2.0, top + height / 2.0);
+    browser.evaluate("window.pressed = document.querySelector('#card-pin'); beltspace.page.events.call('front')");
+    assert_eq!(browser.evaluate("window.pressed.isConnected"), true);
+    browser.mouse("mouseReleased", left + width / 2.0, top + height / 2.0);
+    browser.wait("beltspace.page.pins().length === 1 && !window.pressed.isConnected");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn pages_of_every_kind_are_clear_to_everybody() {
+    let axe = axe();
+    for name in ["pulley-design", "push-belt-yield", "timing-map", "catalogue-v-belts", "flat-belt", "metal-grid"] {
+        let swept = Swept::shipped(name);
+        let mut browser = Browser::open(&swept.page(), "");
+        browser.evaluate("beltspace.data.front?.rows && beltspace.openCard(0)");
+        for theme in ["light", "dark"] {
+            browser.evaluate(&format!("(() => {{ beltspace.state.theme = '{theme}'; beltspace.page.applyTheme(); }})()"));
+            assert_eq!(broken_rules(&mut browser, &axe), Vec::<String>::new(), "{name}, {theme}");
+        }
+        assert_eq!(browser.complaints, Vec::<String>::new(), "{name}");
+    }
+}
