@@ -6,7 +6,8 @@ use crate::report_page::Swept;
 
 /// What has the focus, by its name or its text.
 fn focused(browser: &mut Browser) -> String {
-    browser.text("((it) => it.dataset.focus || it.id || it.getAttribute('aria-label') || it.dataset.x || it.tagName)(document.activeElement)")
+    browser
+        .text("((it) => it.dataset.focus || it.id || it.getAttribute('aria-label') || it.dataset.x || it.tagName)(document.activeElement)")
 }
 
 #[test]
@@ -15,8 +16,7 @@ fn the_focus_stays_where_it_was_when_a_part_of_the_page_is_drawn_anew() {
     let swept = Swept::shipped("metal-cvt");
     let mut browser = Browser::open(&swept.page(), "");
     let press = |browser: &mut Browser, selector: &str| {
-        browser.evaluate(&format!("document.querySelector({selector:?}).focus()"));
-        browser.key("Enter", 13);
+        browser.press(selector);
         browser.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
     };
     // Chips of selections, until none is left.
@@ -28,8 +28,7 @@ fn the_focus_stays_where_it_was_when_a_part_of_the_page_is_drawn_anew() {
     assert_ne!(focused(&mut browser), "BODY");
     // Pins: what is compared, and a pin that is taken away.
     browser.evaluate("[0, 1, 2].forEach((row) => beltspace.page.pin(row))");
-    browser.evaluate("document.querySelector('#only-differences').focus()");
-    browser.key(" ", 32);
+    browser.press("#only-differences");
     assert_eq!(focused(&mut browser), "only-differences");
     press(&mut browser, "[data-focus='unpin B']");
     assert_ne!(focused(&mut browser), "BODY");
@@ -69,7 +68,9 @@ fn the_focus_stays_where_it_was_when_a_part_of_the_page_is_drawn_anew() {
     let next = browser.text("`design ${beltspace.page.designOf(4)}`");
     assert!(browser.text("document.querySelector('#said').textContent").starts_with(&next));
     browser.evaluate("beltspace.page.setWeight('axial_force_upper_N', 90)");
-    browser.wait("document.querySelector('#said').textContent === `first by weights: design ${beltspace.page.designOf(beltspace.page.chosenRow())}`");
+    browser.wait(
+        "document.querySelector('#said').textContent === `first by weights: design ${beltspace.page.designOf(beltspace.page.chosenRow())}`",
+    );
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
@@ -87,16 +88,14 @@ fn a_live_page_keeps_the_focus_and_a_press_while_the_front_changes() {
     // Undo, until there is nothing left to undo.
     for _ in 0..2 {
         browser.evaluate(COUNT);
-        browser.evaluate("document.querySelector('#undo').focus()");
-        browser.key("Enter", 13);
+        browser.press("#undo");
         answered(&mut browser);
     }
     assert_eq!(browser.evaluate("document.querySelector('#undo').disabled"), true);
     assert_eq!(focused(&mut browser), "redo");
     // A bound that was added, and taken away.
     browser.evaluate("beltspace.change({ 'constraints.reserve.max': '1.6', 'constraints.band_count.max': '12' })");
-    browser.evaluate("document.querySelector('#added [aria-label$=\"take it away\"]').focus()");
-    browser.key("Enter", 13);
+    browser.press("#added [aria-label$='take it away']");
     assert_ne!(focused(&mut browser), "BODY");
     assert_eq!(browser.number("document.querySelectorAll('#added [aria-label$=\"take it away\"]').length"), 1.0);
     answered(&mut browser);

@@ -29,7 +29,9 @@ fn one_objective_has_marks_pins_limits_the_sample_and_other_results() {
     let count = |browser: &mut Browser, selector: &str| browser.number(&format!("document.querySelectorAll({selector:?}).length"));
     assert_eq!(browser.text("document.querySelector('#sample').textContent"), "below the front: a sample of 50 feasible designs");
     // The sample has a tick for each of its 8 numbers of bands; the front has one.
-    let ticks = |browser: &mut Browser, line: &str| browser.number(&format!("document.querySelector('#splom [data-line=\"{line}\"]').getAttribute('d').split('M').length - 1"));
+    let ticks = |browser: &mut Browser, line: &str| {
+        browser.number(&format!("document.querySelector('#splom [data-line=\"{line}\"]').getAttribute('d').split('M').length - 1"))
+    };
     assert_eq!(ticks(&mut browser, "feasible"), 8.0);
     assert_eq!(ticks(&mut browser, "the front"), 1.0);
     assert_eq!(count(&mut browser, "#splom .limit"), 1.0, "at least 7");

@@ -82,7 +82,8 @@ fn a_design_that_is_not_on_the_front_is_drawn_pinned_printed_and_in_the_address(
     );
     let card = browser.text("document.querySelector('#card').innerText").replace('\u{202f}', "");
     assert!(card.contains("not on the front") && card.contains("Drawn to scale") && card.contains("80123"), "{card}");
-    let shown = "Object.fromEntries([...document.querySelectorAll('#card [data-name]')].map((it) => [it.dataset.name, Number(it.dataset.value)]))";
+    let shown =
+        "Object.fromEntries([...document.querySelectorAll('#card [data-name]')].map((it) => [it.dataset.name, Number(it.dataset.value)]))";
     let shown: BTreeMap<String, f64> = serde_json::from_value(browser.evaluate(shown)).expect("numbers");
     let study = swept.file("study.toml");
     let told = beltspace(&["eval", study.to_str().expect("a name"), "--design", &design, "--json"]);

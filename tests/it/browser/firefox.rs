@@ -97,13 +97,15 @@ impl Driven for Firefox {
 
     fn key(&mut self, key: &str, _code: u32, held: Held) {
         let value = match key {
-            "Enter" => "\u{e007}",
+            "Enter" => "\u{e006}",
             "Escape" => "\u{e00c}",
             "Tab" => "\u{e004}",
             "ArrowLeft" => "\u{e012}",
             "ArrowUp" => "\u{e013}",
             "ArrowRight" => "\u{e014}",
             "ArrowDown" => "\u{e015}",
+            "Home" => "\u{e011}",
+            "End" => "\u{e010}",
             other => other,
         };
         let down = |value: &str| json!({ "type": "keyDown", "value": value });

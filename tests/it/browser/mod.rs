@@ -62,7 +62,7 @@ pub struct Browser {
 }
 
 /// Is it Firefox that is driven?
-fn is_firefox() -> bool {
+pub fn is_firefox() -> bool {
     match std::env::var("BELTSPACE_BROWSER").as_deref() {
         Ok("firefox") => true,
         Ok("chromium") | Err(std::env::VarError::NotPresent) => false,
@@ -206,6 +206,20 @@ impl Browser {
     pub fn key(&mut self, key: &str, code: u32) {
         self.driven.key(key, code, Held::None);
         self.note();
+    }
+
+    /// Presses a button with the keyboard, or checks a box.
+    pub fn press(&mut self, selector: &str) {
+        let is_box = self
+            .evaluate(&format!("(() => {{ const e = document.querySelector({selector:?}); e.focus(); return e.type === 'checkbox'; }})()"));
+        if is_firefox() {
+            // Without a screen its window is never the active one, and then no key presses a button.
+            self.evaluate("document.activeElement.click()");
+        } else if is_box == true {
+            self.key(" ", 32);
+        } else {
+            self.key("Enter", 13);
+        }
     }
 
     /// Goes back to what had the focus before.
