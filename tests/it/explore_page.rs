@@ -390,19 +390,38 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     assert_eq!(browser.text("beltspace.page.designOf(beltspace.page.state.card)"), card);
     assert_eq!(browser.evaluate("document.querySelector('#card').inert"), false);
     browser.wait(&format!("location.hash === {hash:?}"));
-    // A design that the exact front lacks too is on no card and in no address.
+    // A card whose design the exact front lacks too stays, and says why it is not there; it is on the front again with the study of before.
     browser.evaluate(COUNT);
     browser.evaluate("beltspace.change({ 'constraints.stress_margin.min': String(Math.max(...beltspace.page.front.columns.find((it) => it.name === 'stress_margin').values) - 1e-9) })");
     answered(&mut browser);
-    browser.wait("document.querySelector('#card').hidden && beltspace.page.state.card === null && beltspace.page.state.awaited === null");
+    browser.wait("beltspace.page.state.known && beltspace.page.state.card === null && beltspace.page.state.awaited === null");
+    let said = browser.text("document.querySelector('#card').innerText");
+    assert!(said.starts_with(&format!("Design {card}")) && said.contains("infeasible") && said.contains("Drawn to scale"), "{said}");
+    let margin = "Number(document.querySelector('[data-name=\"margin of stress_margin\"]').dataset.value)";
+    assert!(browser.number(margin) < 0.0, "{said}");
+    assert_eq!(browser.evaluate("document.querySelector('#card').inert"), false);
+    browser.wait("document.querySelector('#all-outputs table')");
+    browser.evaluate(COUNT);
+    browser.evaluate("beltspace.page.undoChange()");
+    answered(&mut browser);
+    browser.wait(&format!("beltspace.page.state.known === null && beltspace.page.designOf(beltspace.page.state.card) === '{card}'"));
+    assert!(browser.text("document.querySelector('#card').innerText").contains("of the front"));
+    browser.evaluate(COUNT);
+    browser.evaluate("beltspace.page.redoChange()");
+    answered(&mut browser);
+    browser.wait("beltspace.page.state.known");
     // What was pinned before the change stays pinned, and is in the address with the changes that it is of.
-    browser.wait("!location.hash.includes('d=') && location.hash.includes('~')");
+    browser.wait(&format!("location.hash.includes('d={card}') && location.hash.includes('~')"));
     let hash = browser.text("location.hash");
     browser.go_to_address(&format!("{address}/#"));
     browser.wait("beltspace.page.pins().length === 0");
     browser.go_to_address(&format!("{address}/{hash}"));
     browser.wait(&format!("beltspace.page?.pins().length === {}", pinned.split(',').count()));
     assert_eq!(browser.text(pins), pinned);
+    // So is the card of the address, and there is none of a design that the study has not.
+    browser.wait(&format!("beltspace.page.state.known?.design === '{card}' && !document.querySelector('#card').hidden"));
+    browser.evaluate("location.hash = location.hash.replace(/d=[0-9]+/, 'd=99999999999')");
+    browser.wait("document.querySelector('#card').hidden && !document.querySelector('#card').inert");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

@@ -96,6 +96,7 @@
     const row = page.rowOf(design);
     state.awaited = row < 0 && page.awaits() ? design || null : null;
     if (row >= 0) return () => page.openCard(row);
+    if (design && page.keepLost && state.awaited === null) return () => page.keepLost(design, page.changeList());
     const elsewhere = state.awaited === null ? page.knownOf(design) : null;
     return elsewhere && (() => page.openKnown(elsewhere));
   };

@@ -47,7 +47,8 @@
     const { section, table, valueCell, command, evaluateOf, boundsOf, button } = page.cardParts;
     const { design, set, values } = known;
     const isOther = String(set) !== String(page.shownSet ?? []);
-    const place = set.length && isOther ? `with ${set.join(", ")}` : isOther ? "of the study without changes" : "not on the front";
+    const why = known.isFeasible === undefined ? "not on the front" : known.isFeasible ? "feasible, but not on the front: others are better" : `infeasible${known.status ? `: ${known.status}` : ""}`;
+    const place = set.length && isOther ? `with ${set.join(", ")}` : isOther ? "of the study without changes" : why;
     const isPinned = page.isPinned(known);
     const buttons = page.element("div", { class: "card-buttons no-print" }, page.front?.rows ? button("card-pin", isPinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", isPinned ? "Unpin" : "Pin", () => page.pin(known), !isPinned && !page.canPin()) : null, button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-close", "Close (Esc)", "×", page.closeCard));
     const head = page.element("div", { class: "card-head" }, page.element("div", {}, page.element("p", { class: "print-only sheet-study" }, page.data.title), page.element("h2", { id: "card-title" }, `Design ${design}`), page.element("p", { class: "muted" }, place)), buttons);
@@ -70,7 +71,7 @@
     ].filter(Boolean);
   };
 
-  page.openKnown = (known) => page.showCard(null, () => build(known), true, known);
+  page.openKnown = (known, takesFocus = true) => page.showCard(null, () => build(known), takesFocus, known);
 
   // A design on the front, or what the page, a list or a map knows of it.
   page.openDesign = (design, more) => {

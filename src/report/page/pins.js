@@ -83,12 +83,17 @@
     page.events.call("pins");
   };
 
-  // A first front has few designs: what it lacks may be on the next. What the exact one lacks too is not there; pins of other changes wait
-  // for these to come back.
+  // A first front has few designs: what it lacks may be on the next.
   const adoptAwaited = () => {
     const isShown = (pin) => page.front && isOf(pin, shownSet());
     const found = awaited.filter((pin) => isShown(pin) && (page.rowOf(pin.design) >= 0 || page.knownOf(pin.design)));
-    awaited = awaited.filter((pin) => !found.includes(pin) && (page.awaits() || !isShown(pin)));
+    // Of one that the exact front has not the engine says what it is.
+    const isAsked = (pin) => {
+      if (!page.askPin) return false;
+      if (!pin.isAsked) askOther(Object.assign(pin, { isAsked: true }));
+      return true;
+    };
+    awaited = awaited.filter((pin) => !found.includes(pin) && (page.awaits() || !isShown(pin) || isAsked(pin)));
     for (const { design, letter } of found.slice(0, MOST - pins.length)) {
       const row = page.rowOf(design);
       const pin = row >= 0 ? pinOf(row) : knownPin(page.knownOf(design));

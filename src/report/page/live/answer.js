@@ -60,7 +60,9 @@
     shown = { question, front: JSON.stringify(told.front), buffer };
     Object.assign(data, { objectives: told.objectives, constraints: told.constraints, scenarios: told.scenarios });
     const { state } = page;
-    const design = page.front && state.card !== null ? page.designOf(state.card) : state.awaited;
+    // A card of a design that is not on the front follows the study as any other does.
+    const followed = state.known && sameList(state.known.set, page.shownSet) ? state.known.design : null;
+    const design = page.front && state.card !== null ? page.designOf(state.card) : (state.awaited ?? followed);
     page.front = page.frontOf(data, told.front, buffer);
     // It is of what was asked before.
     if (!sameList(page.shownSet, question.set)) page.sample = null;
@@ -69,6 +71,7 @@
     page.adoptFront();
     const row = design === null ? -1 : page.rowOf(design);
     state.card = row < 0 ? null : row;
+    if (row >= 0) state.known = null;
     // What a first front lacks may be on the exact one: until then the card stands as it is, and nothing on it can be pressed.
     state.awaited = row < 0 && page.awaits() ? design : null;
     const card = page.byId("card");
@@ -78,7 +81,7 @@
     for (const id of ["matrix-section", "parallel-section", "table-section", "bar"]) page.byId(id).hidden = !page.front.rows;
     // Whoever is at work elsewhere by now stays there.
     if (state.card !== null && card.hidden) page.openCard(state.card, document.activeElement === document.body);
-    else if (design !== null && state.card === null && state.awaited === null) page.closeLostCard();
+    else if (design !== null && state.card === null && state.awaited === null) page.keepLost(design, question.set);
   };
 
   // No exact front comes. A card that waits for one is put away until a front has its design.

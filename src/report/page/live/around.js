@@ -47,15 +47,35 @@
     }
   };
 
-  // What a pinned design of other changes is made of, and what that gives.
-  page.askPin = async ({ design, set }) => {
+  // What any design is made of with these changes, what that gives, and what its drawing needs.
+  const askKnown = async ({ design, set }) => {
     const told = await page.askOnce("/design", { set, design });
     const values = new Map([...Object.entries(told.inputs), ...told.outputs.map(({ name, value }) => [name, value ?? NaN])]);
     const entry = (column) => {
       const value = values.get(column.name);
       return page.pinEntry(column, column.words ? column.words.indexOf(value) : value, page.short(value));
     };
-    return new Map(page.front.shown.filter((column) => values.has(column.name)).map(entry));
+    const shown = new Map(page.front.shown.filter((column) => values.has(column.name)).map(entry));
+    return { design, set, values: shown, isFeasible: told.feasible, status: told.status, section: told.section, givens: told.givens, inputs: told.described };
+  };
+  page.askPin = async (pin) => (await askKnown(pin)).values;
+
+  // The card of a design that the exact front has not, or no more, stays: with what it is now, and why it is not there.
+  page.keepLost = async (design, set) => {
+    const card = page.byId("card");
+    page.state.awaited = design;
+    card.inert = true;
+    const isOld = () => page.state.awaited !== design || String(page.shownSet) !== String(set);
+    try {
+      const known = await askKnown({ design, set });
+      if (!isOld()) page.openKnown(known, false);
+    } catch {
+      // There is no such design in the study as it is now.
+      if (isOld()) return;
+      page.state.awaited = null;
+      page.closeLostCard();
+      card.inert = false;
+    }
   };
 
   page.startAround = () => {
