@@ -48,7 +48,7 @@
     section.replaceChildren(
       page.element(
         "details",
-        { open: page.isWeighed() },
+        { open: page.isWeighed(), toggle: () => page.isWeighed() || page.schedule("weigh", update) },
         page.element("summary", {}, page.element("h2", { id: "weigh-title" }, "Weights and wished values")),
         page.element("p", { class: "hint" }, "For each objective it counts how far a design is from the best value on the front: 0 at the best, 1 at the worst. With a wished value it counts from there, and what is better than wished counts below 0. Each of these numbers is multiplied by the objective’s weight, and the largest product is the design’s score. The least score comes first: the design whose worst objective is least bad (weighted Chebyshev distance). A thousandth of the sum of the numbers decides between equals."),
         page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Weights by objective" }, page.element("table", { class: "weights" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, goals.map(line)))),
@@ -104,15 +104,15 @@
     const often = stable ? [...stable.wins].filter(([row]) => !order.includes(row)).sort((a, b) => b[1] - a[1]).slice(0, 3).map(([row]) => row) : [];
     const rows = [...order, ...often];
     const focused = box.contains(document.activeElement) ? document.activeElement.textContent : null;
-    box.replaceChildren(table(rows, stable), page.element("p", { class: "hint" }, `${part}${wished()}${wordsOf(stable, rows)}`));
+    box.replaceChildren(page.isWeighed() ? "" : plain("By this score they come in this order:"), table(rows, stable), page.element("p", { class: "hint" }, `${part}${wished()}${wordsOf(stable, rows)}`));
     if (focused) [...box.querySelectorAll("button")].find((button) => button.textContent === focused)?.focus();
     box.dataset.done = stable ? "yes" : "no";
   };
 
-  const plain = () => {
+  const plain = (more) => {
     const { front } = page;
     const knee = front.knee === null || front.knee === undefined ? "" : ` The knee, design ${page.designOf(front.knee)}, stands for that: of all designs it is nearest to the ideal, each objective scaled to its range on the front.`;
-    page.byId("ranked").replaceChildren(page.element("p", {}, `All weights are equal and nothing is wished.${knee} Move a weight, or type a value that you wish for.`));
+    return page.element("p", {}, `All weights are equal and nothing is wished.${knee} Move a weight, or type a value that you wish for. ${more}`);
   };
 
   let waiting = 0;
@@ -124,13 +124,13 @@
     page.byId("clear-weights").disabled = !page.isWeighed();
     const mine = ++run;
     clearTimeout(waiting);
-    if (!page.isWeighed()) {
-      wasWeighed = false;
-      return plain();
-    }
+    const isWeighed = page.isWeighed();
+    const details = page.byId("weigh").querySelector("details");
     // Somebody may close it again.
-    if (!wasWeighed) page.byId("weigh").querySelector("details").open = true;
-    wasWeighed = true;
+    if (isWeighed && !wasWeighed) details.open = true;
+    wasWeighed = isWeighed;
+    // Nobody looks at the order that equal weights give.
+    if (!isWeighed && !details.open) return page.byId("ranked").replaceChildren(plain(""));
     show(null);
     waiting = setTimeout(async () => {
       const stable = await page.stability(kind, () => mine !== run);
@@ -146,7 +146,10 @@
     if (!page.front || !page.front.objectives.length) return;
     build();
     update();
-    page.events.on("choice.weigh", () => page.schedule("weigh", update));
+    page.events.on("choice.weigh", () => {
+      if (page.byId("ranked")) page.byId("ranked").dataset.done = "no";
+      page.schedule("weigh", update);
+    });
     page.events.on("choice.goals", () => page.schedule("goals", page.showGoals));
     const words = () => (page.isWeighed() ? `first by weights: design ${page.designOf(page.chosenRow())}` : "equal weights");
     let said = words();
