@@ -232,6 +232,17 @@ pub struct SweepArgs {
     pub perturb: Vec<String>,
 }
 
+/// The part of an address behind its `#`, without signs that an address cannot have.
+fn page_view(text: &str) -> Result<String, String> {
+    let text = text.trim_start_matches('#');
+    match text.chars().find(|&it| !it.is_ascii_graphic() || "\"'<>`\\".contains(it)) {
+        Some(wrong) => {
+            Err(format!("a view has no {wrong:?}; copy it whole, with the button \"Copy view\" of the page, and put it in quotes"))
+        }
+        None => Ok(text.to_owned()),
+    }
+}
+
 /// Options of `explore`.
 #[derive(Debug, Args)]
 #[command(after_help = "The page is served to this machine only, and asks for the token in its address. From another machine: \
@@ -242,6 +253,9 @@ pub struct ExploreArgs {
     /// Begin with this change. May be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// Open the page with this view: what "Copy view" on the page gives, its ranges, pins, weights and columns
+    #[arg(long, value_name = "VIEW", value_parser = page_view)]
+    pub view: Option<String>,
     /// Port to listen on [default: any that is free]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     pub port: u16,

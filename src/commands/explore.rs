@@ -23,9 +23,10 @@ pub fn run(request: &cli::ExploreArgs) -> Result<()> {
     };
     let explorer = Explorer::bind(live, request.port, &request.set, Box::new(words))?;
     ctrlc::set_handler(|| std::process::exit(0)).map_err(|error| Error::Request(format!("Ctrl-C cannot be caught: {error}")))?;
-    let opened = !request.no_browser && open::that_detached(explorer.address_once()).is_ok();
+    let view = request.view.as_ref().map_or_else(String::new, |it| format!("#{it}"));
+    let opened = !request.no_browser && open::that_detached(explorer.address_once() + &view).is_ok();
     let how = if opened { "open in your browser, and at" } else { "open in a browser:" };
-    terminal::print(&format!("{how} {}\nCtrl-C ends it\n", explorer.address()))?;
+    terminal::print(&format!("{how} {}{view}\nCtrl-C ends it\n", explorer.address()))?;
     explorer.serve();
     Ok(())
 }

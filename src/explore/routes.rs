@@ -11,7 +11,7 @@ use crate::models::Models;
 use crate::plan::Plan;
 use crate::report::{givens, inputs, live as told, sections, slices};
 use crate::screen::Control;
-use crate::study::{Axis, Quantity, ReportColumn, Study, number, value_of};
+use crate::study::{Axis, Label, Quantity, ReportColumn, Study, number, value_of};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::io;
@@ -224,8 +224,12 @@ impl Explorer {
             json!({ "name": column.name, "unit": column.unit(&plan.study), "doc": column.doc(&plan.study), "value": value, "scenario": value.as_ref().map(|_| at.scenario) })
         });
         let chosen = plan.study.design.iter().flat_map(Axis::inputs);
-        let inputs: Map<_, _> =
-            chosen.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input]))).collect();
+        let inputs = chosen.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input])));
+        // Rows of a catalogue say which part it is.
+        let text =
+            |label: &Label| label.texts[usize::try_from(plan.space.level(label.axis, design)).expect("a row that is in memory")].clone();
+        let labels = plan.study.labels.iter().map(|label| (label.name.clone(), text(label).into()));
+        let inputs: Map<_, _> = inputs.chain(labels).collect();
         let scenarios: std::collections::BTreeSet<u64> = row.columns.iter().filter(|it| it.value.is_some()).map(|it| it.scenario).collect();
         let told = json!({
             "kind": "design", "design": design.to_string(), "inputs": inputs, "outputs": named.collect::<Vec<_>>(), "feasible": row.feasible,

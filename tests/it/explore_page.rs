@@ -396,7 +396,10 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     answered(&mut browser);
     browser.wait("beltspace.page.state.known && beltspace.page.state.card === null && beltspace.page.state.awaited === null");
     let said = browser.text("document.querySelector('#card').innerText");
-    assert!(said.starts_with(&format!("Design {card}")) && said.contains("infeasible") && said.contains("Drawn to scale"), "{said}");
+    assert!(said.starts_with(&format!("Design {card}")) && said.contains("\ninfeasible\n") && said.contains("Drawn to scale"), "{said}");
+    let command = browser.text("document.querySelector('#evaluate').textContent");
+    assert!(command.contains("--set constraints.stress_margin.min=") && command.ends_with(&format!("--design {card}")), "{command}");
+    assert!(browser.text("document.querySelector('#readout').innerText").contains(&format!("design {card} (card, not on the front)")));
     let margin = "Number(document.querySelector('[data-name=\"margin of stress_margin\"]').dataset.value)";
     assert!(browser.number(margin) < 0.0, "{said}");
     assert_eq!(browser.evaluate("document.querySelector('#card').inert"), false);

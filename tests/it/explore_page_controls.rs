@@ -26,7 +26,7 @@ fn undo(browser: &mut Browser) {
     answered(browser);
 }
 
-const DRAWN: &str = r#"
+pub const DRAWN: &str = r#"
 model = "metal-cvt"
 [design]
 band_count        = { from = 6, to = 12 }

@@ -2,6 +2,7 @@
 
 use crate::browser::Browser;
 use crate::explore_page::{COUNT, Explored, SMALL, answered, axe, broken_rules, open, study_file};
+use crate::explore_page_controls::DRAWN;
 use crate::report_page::Swept;
 
 /// What has the focus, by its name or its text.
@@ -126,4 +127,65 @@ fn pages_of_every_kind_are_clear_to_everybody() {
         }
         assert_eq!(browser.complaints, Vec::<String>::new(), "{name}");
     }
+    // Without a feasible design, and with the list of columns open.
+    let swept = Swept::text(&SMALL.replace("stress_margin = { min = 0 }", "stress_margin = { min = 50 }"));
+    let mut browser = Browser::open(&swept.page(), "");
+    assert_eq!(broken_rules(&mut browser, &axe), Vec::<String>::new(), "nothing is feasible");
+    // Fields of distributions and of rows of cases.
+    let (_folder, file) = study_file(DRAWN);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser.press("#columns");
+    browser.wait("!document.querySelector('#chooser').hidden && document.querySelectorAll('#controls .case-rows').length === 1");
+    assert_eq!(broken_rules(&mut browser, &axe), Vec::<String>::new(), "distributions");
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_live_page_makes_a_range_a_constraint_and_its_view_is_opened_again_by_a_command() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    // A range that was typed, and one of a cell that is narrower on one side: the constraint is what both leave.
+    browser.press("#columns");
+    browser.evaluate(
+        "(() => { const f = document.querySelector('[data-column=groove_angle_deg][data-bound=low]'); f.value = '19'; f.dispatchEvent(new Event('change', { bubbles: true })); \
+         beltspace.chooseColumns('matrix', ['axial_force_N', 'groove_angle_deg', 'slip_margin']); \
+         const { low, high } = beltspace.page.front.byName.get('axial_force_N'); beltspace.brushCell('axial_force_N', 'groove_angle_deg', [low, high], [18.5, 25]); })()",
+    );
+    browser.wait("document.querySelector('#make-constraint')");
+    browser.evaluate(COUNT);
+    browser.click_on("#make-constraint");
+    answered(&mut browser);
+    let changes = browser.text("beltspace.page.changeList().join()");
+    assert!(
+        changes.contains("constraints.groove_angle_deg.min=19") && changes.contains("constraints.groove_angle_deg.max=25"),
+        "{changes}"
+    );
+    assert!(!changes.contains("min=18.5"), "{changes}");
+    assert_eq!(browser.evaluate("beltspace.page.brushed()"), false);
+    let widest = browser.number("beltspace.page.front.byName.get('groove_angle_deg').high");
+    assert!((20.0..=25.0).contains(&widest), "{widest}");
+    // A range, a pin, a weight and a card are a view.
+    browser.evaluate("beltspace.brushAxis('slip_margin', [0, 0.2]); beltspace.page.pin(1); beltspace.page.setWeight('slip_margin', 80); beltspace.openCard(2)");
+    browser.evaluate("beltspace.page.copyText = async (text) => { window.copied = text; return true; }");
+    browser.click_on("[data-testid=copy-view]");
+    browser.wait("window.copied");
+    let command = browser.text("window.copied");
+    let designs = browser.text("[1, 2].map(beltspace.page.designOf).join()");
+    drop(browser);
+    drop(explored);
+    let (head, view) = command.split_once(" --view ").expect("the view");
+    assert!(head.starts_with("beltspace explore ") && head.contains("--set constraints.groove_angle_deg.min=19"), "{command}");
+    let sets: Vec<&str> = head.split(" --set ").skip(1).collect();
+    let words: Vec<&str> = sets.iter().flat_map(|it| ["--set", *it]).chain(["--view", view.trim_matches('"')]).collect();
+    let again = Explored::new(&file, &words);
+    assert!(again.address.contains("#"), "{}", again.address);
+    let mut browser = open(&again);
+    browser.wait("beltspace.page.pins().length === 1 && beltspace.page.state.card !== null");
+    assert_eq!(browser.text("[beltspace.page.pins()[0].design, beltspace.page.designOf(beltspace.page.state.card)].join()"), designs);
+    assert_eq!(browser.evaluate("beltspace.state.axes.get('slip_margin')"), serde_json::json!([0, 0.2]));
+    assert_eq!(browser.number("beltspace.page.weightOf('slip_margin')"), 80.0);
+    assert_eq!(browser.number("beltspace.page.front.byName.get('groove_angle_deg').high"), widest);
+    assert_eq!(browser.complaints, Vec::<String>::new());
 }

@@ -9,7 +9,23 @@
   let defaults = { matrix: "", parallel: "", colour: null };
   let written = null;
 
+  // What the address says, without what is changed in a study in work.
+  page.viewText = () => textOf().join("&");
   page.writeAddress = () => {
+    const parts = textOf();
+    if (page.changesText?.()) parts.push(`s=${page.changesText()}`);
+    const hash = parts.length ? `#${parts.join("&")}` : "";
+    if (hash === location.hash || hash === written) return;
+    written = hash;
+    // Some browsers refuse to change the address of a local file: then the state is not kept.
+    try {
+      history.replaceState(null, "", hash || location.pathname + location.search);
+    } catch {
+      return;
+    }
+  };
+
+  const textOf = () => {
     const { state } = page;
     const parts = [];
     const add = (key, text) => text && parts.push(`${key}=${text}`);
@@ -31,16 +47,7 @@
       add("a", page.wishesText());
       add("wn", page.nearText());
     }
-    if (page.changesText) add("s", page.changesText());
-    const hash = parts.length ? `#${parts.join("&")}` : "";
-    if (hash === location.hash || hash === written) return;
-    written = hash;
-    // Some browsers refuse to change the address of a local file: then the state is not kept.
-    try {
-      history.replaceState(null, "", hash || location.pathname + location.search);
-    } catch {
-      return;
-    }
+    return parts;
   };
 
   const parseRange = (text) => {

@@ -39,7 +39,11 @@
   };
 
   const remedy = (doubtful) => {
-    const bounds = doubtful.map(boundsOf).filter((it) => it.min !== undefined || it.max !== undefined);
+    // Of several ranges of one column what all of them leave.
+    const all = d3.group(doubtful.map(boundsOf), (it) => it.name);
+    const ends = (which, of, choose) => (of.some((it) => it[which] !== undefined) ? { [which]: choose(of, (it) => it[which]) } : {});
+    const both = [...all].map(([name, of]) => ({ name, ...ends("min", of, d3.max), ...ends("max", of, d3.min) }));
+    const bounds = both.filter((it) => it.min !== undefined || it.max !== undefined);
     if (!bounds.length) return [];
     if (page.constrain) {
       const make = () => {

@@ -26,7 +26,7 @@ page.short = (value) => {
 };
 
 // Very small and very large numbers, with a power of ten.
-page.powerText = (value) => Number(value.toPrecision(4)).toExponential().replace(/^-/, "−").replace("e+", "e").replace("e-", "e−");
+page.powerText = (value, digits = 4) => Number(value.toPrecision(digits)).toExponential().replace(/^-/, "−").replace("e+", "e").replace("e-", "e−");
 
 // A number that stands for itself on an axis: eight significant digits, or those that it has.
 page.exactly = (value) => {
@@ -140,7 +140,7 @@ page.afterPause = (pause, work) => {
 page.keepFocus = (box, draw, otherwise = null) => {
   const focused = box.contains(document.activeElement) && document.activeElement !== box ? document.activeElement : null;
   const stops = () => [...box.querySelectorAll("a[href], button, input, select, summary, [tabindex]")].filter((it) => !it.disabled && it.getClientRects().length);
-  const nameOf = (it) => it.dataset.focus || it.id || (it.dataset.x ?? null);
+  const nameOf = (it) => it.dataset.focus || it.id || (it.dataset.x ? `${it.dataset.x} ${it.dataset.y}` : null);
   const at = focused ? stops().indexOf(focused) : -1;
   const result = draw();
   if (!focused || (document.activeElement === focused && !focused.disabled)) return result;

@@ -207,6 +207,17 @@
     page.showCard(row, () => build(row), takesFocus);
   };
 
+  // A card that waits for its design to be found again cannot be used; who was on it is there again afterwards.
+  let heldFocus = null;
+  page.holdCard = (isHeld) => {
+    const card = page.byId("card");
+    if (isHeld && card.contains(document.activeElement)) heldFocus = document.activeElement.id || "card";
+    card.inert = isHeld;
+    if (isHeld || heldFocus === null) return;
+    if (document.activeElement === document.body && !card.hidden) (page.byId(heldFocus) ?? card).focus({ preventScroll: true });
+    heldFocus = null;
+  };
+
   let rebuild = null; // what makes the card that is open
   const pressed = { is: false, later: false }; // is a button held down on the card, and is it to be built anew then?
 
@@ -218,10 +229,11 @@
     if (fresh) opener = document.activeElement;
     const width = page.byId("main").clientWidth;
     Object.assign(page.state, { card: row, known, awaited: null });
-    card.inert = false;
     rebuild = children;
+    card.inert = false;
     card.replaceChildren(...children());
     card.hidden = false;
+    page.holdCard(false);
     document.body.classList.add("with-card");
     const again = within && page.byId(within);
     if (again && !again.disabled) again.focus();
@@ -246,10 +258,16 @@
 
   // Its design is not on the front any more.
   page.closeLostCard = () => {
-    page.byId("card").hidden = true;
+    const card = page.byId("card");
+    const width = page.byId("main").clientWidth;
+    const hadFocus = heldFocus !== null || card.contains(document.activeElement);
+    heldFocus = null;
+    card.hidden = true;
     page.state.known = null;
     document.body.classList.remove("with-card");
     page.events.call("card");
+    layoutIfNarrower(width);
+    if (hadFocus) returnFocus();
   };
 
   // The card alone, on paper.

@@ -40,12 +40,13 @@
     const { state } = page;
     const shown = state.parallel.includes(column.name) || (state.matrix.length === 1 && state.matrix[0] === column.name);
     if (!shown) page.chooseColumns("parallel", [...state.parallel, column.name]);
-    const range = [read(inputs[0], column.low), read(inputs[1], column.high)];
+    const { low, high } = page.front.byName.get(column.name);
+    const range = [read(inputs[0], low), read(inputs[1], high)];
     page.brushAxis(column.name, range[0] <= range[1] ? range : [range[1], range[0]]);
   };
 
   const line = (column) => {
-    const bound = (which) => page.element("input", { type: "number", step: "any", class: "bound", "data-bound": which, "data-column": column.name, placeholder: page.short(which === "low" ? column.low : column.high).replace("−", "-"), "aria-label": `${column.name}, ${which === "low" ? "at least" : "at most"}` });
+    const bound = (which) => page.element("input", { type: "number", step: "any", class: "bound", "data-bound": which, "data-column": column.name, "aria-label": `${column.name}, ${which === "low" ? "at least" : "at most"}` });
     const inputs = [bound("low"), bound("high")];
     inputs.forEach((input) => input.addEventListener("change", () => setRange(column, inputs)));
     const words = (word, i) => page.element("button", { type: "button", class: "word-button", click: () => setWord(column, i), "aria-label": `${column.name}: only ${page.wordText(word)}` }, page.wordText(word));
@@ -58,24 +59,28 @@
     page.brushAxis(column.name, [i - 0.4, i + 0.4]);
   };
 
-  let built = false;
+  // What the lines are built for: columns of another study, or other words, ask for others.
+  const keyOf = () => page.front.shown.map(({ name, words }) => [name, ...(words ?? [])].join()).join(";");
+  let built = null;
   const build = () => {
-    if (!built) {
-      built = true;
+    if (built !== keyOf()) {
+      const isFirst = built === null;
+      built = keyOf();
       const head = ["column", "unit", "matrix", "axes", "at least", "at most"].map((name) => page.element("th", { scope: "col" }, name));
       const bodies = Object.entries(page.columnGroups).map(([role, label]) => {
         const columns = page.columnsOf(role);
         return columns.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 6, scope: "rowgroup" }, label)), columns.map(line)) : null;
       });
       const close = page.element("button", { type: "button", click: () => page.toggleChooser(false) }, "Close");
-      page.byId("chooser").append(page.element("div", { class: "scroll" }, page.element("table", { class: "columns" }, page.element("thead", {}, page.element("tr", {}, head)), bodies)), close);
-      page.byId("chooser").addEventListener("keydown", (event) => event.key === "Escape" && page.toggleChooser(false));
+      page.keepFocus(page.byId("chooser"), () => page.byId("chooser").replaceChildren(page.element("div", { class: "scroll" }, page.element("table", { class: "columns" }, page.element("thead", {}, page.element("tr", {}, head)), bodies)), close));
+      if (isFirst) page.byId("chooser").addEventListener("keydown", (event) => event.key === "Escape" && page.toggleChooser(false));
     }
     update();
   };
 
   const update = () => {
-    if (!built || page.byId("chooser").hidden) return;
+    if (built === null || page.byId("chooser").hidden) return null;
+    if (built !== keyOf()) return build();
     const { state } = page;
     const full = state.matrix.length >= MOST;
     for (const box of page.byId("chooser").querySelectorAll("input[type=checkbox]")) {
@@ -84,6 +89,7 @@
     }
     for (const input of page.byId("chooser").querySelectorAll(".bound")) {
       const range = state.axes.get(input.dataset.column);
+      input.placeholder = page.short(page.front.byName.get(input.dataset.column)[input.dataset.bound]).replace("−", "-");
       if (input !== document.activeElement) input.value = range ? String(range[input.dataset.bound === "low" ? 0 : 1]) : "";
     }
   };

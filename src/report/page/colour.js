@@ -58,7 +58,7 @@
     const strip = page.element("div", { class: "strip" });
     const stops = stopsOf(ramp);
     strip.style.background = `linear-gradient(to right, ${stops.join(",")})`;
-    strip.dataset.stops = JSON.stringify(stops);
+    strip.dataset.bands = JSON.stringify([stops]);
     strip.style.width = `${width}px`;
     bar.append(page.element("div", { class: "bar-title" }, title), strip);
     if (Number.isFinite(low) && high > low) {
@@ -88,7 +88,11 @@
     const format = scale.tickFormat(count);
     const [a, b] = scale.domain();
     const size = Math.max(Math.abs(a), Math.abs(b));
-    if (size >= 1e7 || (size < 1e-3 && size > 0)) return (value) => (value === 0 ? "0" : page.powerText(value));
+    if (size >= 1e7 || (size < 1e-3 && size > 0)) {
+      // As many digits as tell one tick from the next.
+      const digits = Math.max(1, Math.min(15, Math.ceil(Math.log10(size / d3.tickStep(a, b, count))) + 1));
+      return (value) => (value === 0 ? "0" : page.powerText(value, digits));
+    }
     return (value) => {
       const text = format(value).replace(/,/g, "");
       const whole = text.match(/\d+/)?.[0] ?? "";
@@ -98,7 +102,7 @@
 
   const BAR = 240; // px
   const legendOf = (column, room) => {
-    const title = page.withUnit(column.name, column.unit);
+    const title = page.axisName(column.name, column.unit);
     const ramp = rampOf();
     if (!column.words) return page.colourBar(title, column.low, column.high, ramp, Math.min(BAR, room));
     const place = placeOf(column);

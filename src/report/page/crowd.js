@@ -139,11 +139,16 @@
     const bands = levels.map((level) => d3.range(0, palette.length - 1, 15).map((colour) => at(colour, level)));
     if (strip) {
       strip.classList.add("crowd");
+      strip.dataset.bands = JSON.stringify(bands);
       strip.style.background = bands.map((stops, band) => `linear-gradient(to right, ${stops.join(",")}) 0 ${(100 * band) / 3}% / 100% 25% no-repeat`).join(",");
     }
     const swatches = [...bar.querySelectorAll(".swatch")];
     const perWord = (palette.length - 2) / Math.max(1, swatches.length - 1); // 1 unless there are more words than colours for them
-    swatches.forEach((swatch, word) => (swatch.style.background = `linear-gradient(to right, ${levels.map((level) => at(Math.round(word * perWord), level)).join(",")})`));
+    swatches.forEach((swatch, word) => {
+      const colours = levels.map((level) => at(Math.round(word * perWord), level));
+      swatch.style.background = `linear-gradient(to right, ${colours.join(",")})`;
+      swatch.dataset.bands = JSON.stringify([colours]);
+    });
     bar.append(page.element("div", { class: "bar-title", "data-testid": "crowd" }, `${page.denser()}: more designs in one place`));
   };
 }

@@ -22,6 +22,20 @@
       const i = from.findIndex((low, k) => value >= low && value <= to[k]);
       page.tip(event, i < 0 ? "" : `${page.short(from[i])} to ${page.short(to[i])}${unit ? ` ${page.unit(unit)}` : ""}: ${page.count(designs[i])} designs`);
     };
+    // The current design and those that are pinned, where the front has this quantity.
+    const marks = svg.append("g").attr("class", "marks");
+    const mark = () => {
+      marks.selectAll("*").remove();
+      const column = page.front?.byName.get(of);
+      if (!column || column.words) return;
+      const isWithin = (at) => at >= MARGIN.left && at <= WIDTH - MARGIN.right;
+      const at = x(page.currentValue(of));
+      if (isWithin(at)) marks.append("path").attr("class", "current").attr("d", `M${at},${MARGIN.top}V${HEIGHT - MARGIN.bottom}`);
+      const pins = page.pins().map((pin) => ({ letter: pin.letter, x: x(page.placeIn(pin.values, column)), y: MARGIN.top + 8 })).filter((pin) => isWithin(pin.x));
+      page.drawLetters(marks, pins, [MARGIN.left, MARGIN.top, WIDTH - MARGIN.right, HEIGHT - MARGIN.bottom]);
+    };
+    for (const event of ["current", "card", "pins"]) page.events.on(`${event}.histogram-${of}`, mark);
+    mark();
     svg.on("pointermove", hit).on("pointerleave", (event) => page.tip(event, ""));
     return svg.node();
   };

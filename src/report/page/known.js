@@ -6,9 +6,10 @@
   // One value under its name, as pins have it. Texts are words; those that the front has are told by their place among its own.
   const entryOf = ({ name, unit, value }) => {
     const told = column(name);
-    const isWord = typeof value === "string";
-    const at = isWord && told?.words ? told.words.indexOf(value) : -1;
-    const entry = { value: at >= 0 ? at : value, text: isWord ? page.wordText(value) : page.short(value), unit: told?.unit ?? unit, role: told?.role ?? "report", words: isWord, goal: told?.goal };
+    // Of words and numbers on one axis the numbers are words too.
+    const word = typeof value === "string" || told?.words ? String(value) : null;
+    const at = word === null || !told?.words ? -1 : told.words.indexOf(word);
+    const entry = { value: at >= 0 ? at : value, text: word === null ? page.short(value) : page.wordText(word), unit: told?.unit ?? unit, role: told?.role ?? "report", words: word !== null, word, goal: told?.goal };
     return [name, entry];
   };
 
@@ -47,7 +48,7 @@
     const { section, table, valueCell, command, evaluateOf, boundsOf, button } = page.cardParts;
     const { design, set, values } = known;
     const isOther = String(set) !== String(page.shownSet ?? []);
-    const why = known.isFeasible === undefined ? "not on the front" : known.isFeasible ? "feasible, but not on the front: others are better" : `infeasible${known.status ? `: ${known.status}` : ""}`;
+    const why = known.isFeasible === undefined ? "not on the front" : known.isFeasible ? "feasible, but not on the front: others are better" : `infeasible${known.status && known.status !== "ok" ? `: ${known.status}` : ""}`;
     const place = set.length && isOther ? `with ${set.join(", ")}` : isOther ? "of the study without changes" : why;
     const isPinned = page.isPinned(known);
     const buttons = page.element("div", { class: "card-buttons no-print" }, page.front?.rows ? button("card-pin", isPinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", isPinned ? "Unpin" : "Pin", () => page.pin(known), !isPinned && !page.canPin()) : null, button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-close", "Close (Esc)", "×", page.closeCard));
@@ -67,11 +68,20 @@
       margins.length ? section("Margins to the limits", table("values", margins)) : null,
       page.driveSection(known),
       page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null,
-      page.data.evaluate && !set.length ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(design), "evaluate")) : null,
+      page.data.evaluate && !isOther ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(design), "evaluate")) : null,
     ].filter(Boolean);
   };
 
   page.openKnown = (known, takesFocus = true) => page.showCard(null, () => build(known), takesFocus, known);
+
+  // Where the value of a pin or of such a design stands among those of a column: words by their place among the words that it has now.
+  page.placeIn = (entry, { name, words }) => {
+    const of = entry?.get(name);
+    if (!of) return NaN;
+    if (!words) return typeof of.value === "number" && !of.words ? of.value : NaN;
+    const at = words.indexOf(of.word);
+    return at >= 0 ? at : NaN;
+  };
 
   // A design on the front, or what the page, a list or a map knows of it.
   page.openDesign = (design, more) => {
@@ -85,8 +95,8 @@
   page.currentValue = (name) => {
     const { current, card, known } = page.state;
     const row = current ?? card;
-    if (row !== null) return page.front.byName.get(name)?.values[row] ?? NaN;
-    const entry = known?.values.get(name);
-    return typeof entry?.value === "number" ? entry.value : NaN;
+    const column = page.front?.byName.get(name);
+    if (!column) return NaN;
+    return row !== null ? column.values[row] : page.placeIn(known?.values, column);
   };
 }

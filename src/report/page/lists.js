@@ -13,6 +13,13 @@
     for (const line of body.rows) line.classList.toggle("is-current", line.dataset.row === design);
   };
 
+  // The letters of pins of this very study, behind the numbers of their designs.
+  const markPins = (body, index) => {
+    const letters = new Map(page.pins().filter((pin) => !pin.set.length).map(({ design, letter }) => [design, letter]));
+    body.querySelectorAll(".pin-letter").forEach((it) => it.remove());
+    for (const line of body.rows) if (letters.has(line.dataset.row)) line.cells[index].append(page.element("span", { class: "pin-letter" }, letters.get(line.dataset.row)));
+  };
+
   const block = (id, title, hint, { columns, units, rows, of = rows.length, labels = [] }) => {
     // A label may look like a number, such as 007, and stays as it is.
     const words = columns.map((name, at) => labels.includes(name) || rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
@@ -29,10 +36,12 @@
     if (index >= 0) {
       page.openableRows(body, (at) => page.openDesign(at.dataset.row))();
       for (const event of ["current", "card"]) page.events.on(`${event}.${id}`, () => markCurrent(body));
+      page.events.on(`pins.${id}`, () => markPins(body, index));
+      markPins(body, index);
     }
     const rest = (most, kind) => (of > most ? page.element("span", { class: kind }, ` The first ${most} of ${page.count(of)} rows are shown.`) : null);
     const paper = index < 0 ? rest(MOST, "print-only") : rest(page.mostPrinted, "print-only");
-    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint, rest(MOST, "no-print"), paper), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
+    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint, rest(MOST, "no-print"), paper), page.element("div", { class: "scroll tall", tabindex: index < 0 ? 0 : null, role: "region", "aria-label": `${title}, the table` }, table));
   };
 
   page.startLists = () => {

@@ -104,7 +104,7 @@
     const legend = page.element("div", { class: "map-legend" });
     const paint = () => {
       fill(canvas, values, columns, xCells, yCells, low, high);
-      legend.replaceChildren(page.colourBar(page.withUnit(map.value.name, map.value.unit), low, high, page.areaRamp(), 260), ...lines);
+      legend.replaceChildren(page.colourBar(page.axisName(map.value.name, map.value.unit), low, high, page.areaRamp(), 260), ...lines);
     };
     svg.append("rect").attr("class", "frame").attr("x", MARGIN.left).attr("y", MARGIN.top).attr("width", inner.width).attr("height", inner.height);
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(ticksFor(d3.axisBottom, map.x, x, 7));

@@ -94,23 +94,21 @@
     text.replaceChildren(page.element("span", { class: "sample-dot", "aria-hidden": "true" }), `${cells.length ? "behind" : "below"} the front: a sample of ${page.count(sample.of)} feasible designs${drawn}`);
   };
 
-  const layout = () => {
+  const layout = () => page.keepFocus(page.byId("splom"), build);
+  const build = () => {
     const { state, front } = page;
     const box = page.byId("splom");
     const names = state.matrix;
     const hint = page.byId("matrix-hint");
     page.byId("matrix-section").hidden = false;
     cells = [];
+    box.replaceChildren();
     page.leaveStrip();
     if (names.length < 2) {
       hint.textContent = names.length ? "Drag to select a range of values. Click near a design to open its card." : "";
-      page.keepFocus(box, () => {
-        box.replaceChildren();
-        page.drawStrip(box, front.byName.get(names[0]));
-      });
+      page.drawStrip(box, front.byName.get(names[0]));
       return nameSample();
     }
-    box.replaceChildren();
     hint.textContent = "Drag to select, click a point to open its card; with the keyboard, arrows go from point to point and Enter opens.";
     const width = page.layoutWidth(box);
     const across = names.length - 1;
@@ -225,8 +223,7 @@
         if (Number.isFinite(at)) cell.marks.append("path").attr("class", "limit").attr("d", path(at)).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
       }
     }
-    const valueOf = (pin, column) => pin.values.get(column.name)?.value;
-    const pins = page.pins().map((pin) => ({ letter: pin.letter, x: clip(cell.xScale, valueOf(pin, cell.x)), y: clip(cell.yScale, valueOf(pin, cell.y)) }));
+    const pins = page.pins().map((pin) => ({ letter: pin.letter, x: clip(cell.xScale, page.placeIn(pin.values, cell.x)), y: clip(cell.yScale, page.placeIn(pin.values, cell.y)) }));
     page.drawLetters(cell.marks, pins.filter(({ x, y }) => Number.isFinite(x) && Number.isFinite(y)), [0, 0, size, size]);
     cell.interval = cell.marks.append("path").attr("class", "interval");
     cell.current = cell.marks.append("circle").attr("class", "current").attr("r", 6).attr("display", "none");

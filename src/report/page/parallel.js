@@ -196,7 +196,7 @@
     svg.selectAll(".pinned").remove();
     const ends = [];
     for (const pin of page.pins()) {
-      const places = axes.map((axis) => [axis.x, axis.scale(pin.values.get(axis.column.name)?.value)]).filter(([, y]) => Number.isFinite(y) && y >= 0 && y <= HEIGHT);
+      const places = axes.map((axis) => [axis.x, axis.scale(page.placeIn(pin.values, axis.column))]).filter(([, y]) => Number.isFinite(y) && y >= 0 && y <= HEIGHT);
       if (!places.length) continue;
       const group = svg.insert("g", ".axis").attr("class", "pinned");
       group.append("path").attr("class", "pin-line").attr("d", d3.line()(places));

@@ -11,7 +11,7 @@
   const columnsOf = () => page.front.shown.filter((column) => column.role !== "output");
 
   // What is known of a design is kept with its pin: another front may not have it any more.
-  page.pinEntry = (column, value, text) => [column.name, { value, text, unit: column.unit, role: column.role, words: Boolean(column.words), goal: column.goal }];
+  page.pinEntry = (column, value, text) => [column.name, { value, text, unit: column.unit, role: column.role, words: Boolean(column.words), word: column.words ? (column.words[value] ?? text) : null, goal: column.goal }];
   const pinOf = (row) => {
     const entries = page.front.shown.map((column) => page.pinEntry(column, column.values[row], page.valueText(column, row)));
     return { design: page.designOf(row), letter: free(), values: new Map(entries), set: shownSet() };
@@ -75,7 +75,7 @@
       const values = await page.askPin(pin);
       if (!awaited.includes(pin)) return;
       awaited = awaited.filter((other) => other !== pin);
-      pins = [...pins, { ...pin, values }].sort((a, b) => d3.ascending(a.letter, b.letter));
+      if (page.canPin()) pins = [...pins, { ...pin, values, letter: isFree(pin.letter) ? pin.letter : free() }].sort((a, b) => d3.ascending(a.letter, b.letter));
     } catch {
       // Its changes are not the study's any more.
       awaited = awaited.filter((other) => other !== pin);
@@ -110,10 +110,13 @@
     return goal === "max" ? Math.max(...values) : Math.min(...values);
   };
 
+  // Words are told by their letters: another front may have others in other places.
+  const told = (entry) => (entry ? (entry.word ?? String(entry.value)) : "");
+
   const line = (name) => {
     const entries = pins.map((pin) => pin.values.get(name));
     const first = entries.find(Boolean);
-    const differs = new Set(entries.map((entry) => (entry ? String(entry.value) : ""))).size > 1;
+    const differs = new Set(entries.map(told)).size > 1;
     const best = bestOf(entries);
     const cell = (entry) => {
       if (!entry) return page.element("td", { class: "number muted" }, "–");
@@ -147,7 +150,7 @@
         changed(pin),
       );
     const same = page.element("input", { type: "checkbox", id: "only-differences", checked: section.dataset.only === "yes", change: (event) => ((section.dataset.only = event.target.checked ? "yes" : "no"), draw()) });
-    const shown = section.dataset.only === "yes" ? rows.filter((name) => new Set(pins.map((pin) => String(pin.values.get(name)?.value))).size > 1) : rows;
+    const shown = section.dataset.only === "yes" ? rows.filter((name) => new Set(pins.map((pin) => told(pin.values.get(name)))).size > 1) : rows;
     section.replaceChildren(
       page.element("div", { class: "title-line" }, page.element("h2", { id: "pins-title" }, "Pinned designs"), page.element("label", { class: "no-print" }, same, " only what differs")),
       page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Pinned designs side by side" }, page.element("table", { class: "pins", "data-testid": "pins-table" }, page.element("thead", {}, page.element("tr", {}, page.element("th", { scope: "col" }, "quantity"), page.element("th", { scope: "col" }, "unit"), pins.map(head))), page.element("tbody", {}, shown.map(line)))),

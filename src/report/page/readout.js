@@ -21,9 +21,14 @@
     const readout = page.byId("readout");
     if (!readout) return;
     const { state, front } = page;
+    const known = state.current === null && state.card === null ? state.known : null;
     const row = state.current ?? state.card ?? page.chosenRow();
     const children = [page.legend(page.layoutWidth(readout) || Infinity)];
-    if (row !== null && row !== undefined) {
+    if (known) {
+      const entry = ([name, { text, unit, words, value }]) => page.element("div", {}, page.element("dt", { title: name }, name), page.element("dd", {}, text, words || !unit || Number.isNaN(value) ? "" : ` ${page.unit(unit)}`));
+      children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${known.design}`), " (card, not on the front)"));
+      children.push(page.element("dl", {}, [...known.values].slice(0, 18).map(entry)));
+    } else if (row !== null && row !== undefined) {
       const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : page.chosenWord();
       const mark = row === page.chosenRow() && what !== page.chosenWord() ? `${what}, ${page.chosenWord()}` : what;
       const labels = front.shown.filter((column) => column.role === "label").map((column) => column.name);

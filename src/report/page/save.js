@@ -4,7 +4,7 @@
     "fill fill-opacity fill-rule stroke stroke-width stroke-opacity stroke-dasharray stroke-linecap stroke-linejoin paint-order " +
     "font-family font-size font-weight font-style text-anchor dominant-baseline opacity"
   ).split(" ");
-  const LEFT_OUT = ".no-print, .offscreen, .brush, .current, .current-line, .map-cell, title, desc";
+  const LEFT_OUT = ".no-print, .offscreen, .brush, .current, .current-line, .strip-current, .map-cell, title, desc";
 
   const escape = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
   const near = (number) => Number(number.toFixed(2));
@@ -83,11 +83,15 @@
       if (element.localName === "svg") return void parts.push(copied(element, placeOf(rect)));
       const { x, y, width: wide, height: high } = rect.width && rect.height ? placeOf(rect) : {};
       if (element.localName === "canvas") return void (wide && parts.push(`<image x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" href="${element.toDataURL()}"/>`));
-      if (wide && element.dataset.stops) {
-        const stops = JSON.parse(element.dataset.stops);
-        const id = `gradient-${parts.length}`;
-        parts.push(`<linearGradient id="${id}">${stops.map((colour, i) => `<stop offset="${i / (stops.length - 1)}" stop-color="${colour}"/>`).join("")}</linearGradient>`);
-        parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="url(#${id})"/>`);
+      if (wide && element.dataset.bands) {
+        // Bars of colours, one below the other.
+        const bands = JSON.parse(element.dataset.bands);
+        bands.forEach((stops, band) => {
+          const id = `gradient-${parts.length}`;
+          const part = high / bands.length;
+          parts.push(`<linearGradient id="${id}">${stops.map((colour, i) => `<stop offset="${i / (stops.length - 1)}" stop-color="${colour}"/>`).join("")}</linearGradient>`);
+          parts.push(`<rect x="${near(x)}" y="${near(y + band * part)}" width="${near(wide)}" height="${near(part)}" fill="url(#${id})"/>`);
+        });
       } else if (wide && d3.color(style.backgroundColor)?.opacity > 0) parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="${style.backgroundColor}"/>`);
       for (const child of element.childNodes) {
         if (child.nodeType === Node.TEXT_NODE) text(child, clip);

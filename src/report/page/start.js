@@ -26,9 +26,10 @@
     if (front && front.rows) {
       page.startChooser();
       page.startTable();
-      page.startCard();
       page.startKneeSlices();
     }
+    // Lists and maps open cards, with a front or without.
+    page.startCard();
     page.startWeigh();
     page.startAddress();
     page.startLists();

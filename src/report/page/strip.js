@@ -46,10 +46,11 @@
       svg.append("path").attr("class", css).attr("data-line", title).attr("d", ticks(values, scale, y));
       svg.append("text").attr("class", "strip-line").attr("x", MARGIN.left - 8).attr("y", y + 8).attr("text-anchor", "end").text(title);
     });
-    const across = svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${height})`).call(page.axisOf(d3.axisBottom, column, scale, 8));
+    const across = svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${height})`).call(page.axisOf(d3.axisBottom, column, scale, Math.max(2, Math.min(8, Math.floor(width / 90)))));
     if (column.words) page.tiltWords(across, (width - MARGIN.left - MARGIN.right) / column.words.length);
+    else page.keepTicksApart(across, width);
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(d3.axisLeft(top).ticks(Math.min(4, top.domain()[1])).tickSize(4).tickFormat(d3.format("~d")));
-    svg.append("text").attr("class", "axis-title").attr("x", (width + MARGIN.left) / 2).attr("y", height + 38).attr("text-anchor", "middle").text(page.axisName(column.name, column.unit) + (column.goal ? `, ${column.goal === "min" ? "lower" : "higher"} is better` : ""));
+    page.writeTitle(svg.append("text").attr("class", "axis-title").attr("y", height + 38), page.axisTitle(column, width - MARGIN.left, 1), (width + MARGIN.left) / 2);
     svg.append("text").attr("class", "axis-title").attr("transform", `translate(22,${BARS / 2})rotate(-90)`).attr("text-anchor", "middle").text("designs on the front");
     const marks = svg.append("g").attr("class", "marks");
     const current = svg.append("path").attr("class", "strip-current");
@@ -81,32 +82,33 @@
     const chosen = page.chosenRow();
     const x = chosen === null || chosen === undefined ? NaN : scale(column.values[chosen]);
     if (Number.isFinite(x)) marks.append("path").attr("class", "knee").attr("d", `M${x},${BARS + 4}l6,6l-6,6l-6,-6z`);
-    const pins = page.pins().map((pin) => ({ letter: pin.letter, x: scale(pin.values.get(column.name)?.value), y: MARGIN.top })).filter((pin) => within(pin.x));
+    const pins = page.pins().map((pin) => ({ letter: pin.letter, x: scale(page.placeIn(pin.values, column)), y: MARGIN.top })).filter((pin) => within(pin.x));
     page.drawLetters(marks, pins, [ends[0], MARGIN.top - 7, ends[1], BARS]);
   };
 
   const nearest = (x) => {
     const { column, scale } = strip;
-    const row = d3.leastIndex(column.values, (a, b) => Math.abs(scale(a) - x) - Math.abs(scale(b) - x));
-    return row >= 0 ? row : null;
+    const row = d3.least(page.selected(), (it) => Math.abs(scale(column.values[it]) - x));
+    return row ?? null;
   };
 
   const listen = (group) => {
     let from = 0;
+    const at = (event) => d3.pointer(event.changedTouches ? event.changedTouches[0] : event, group.node())[0];
     strip.brush.on("start", (event) => {
-      if (event.sourceEvent) from = d3.pointer(event.sourceEvent, group.node())[0];
+      if (event.sourceEvent) from = at(event.sourceEvent);
     });
     strip.brush.on("brush end", (event) => {
       if (!event.sourceEvent) return;
       const { column, scale, pixels } = strip;
-      if (event.type === "end" && Math.abs(d3.pointer(event.sourceEvent, group.node())[0] - from) < 3) {
+      if (event.type === "end" && Math.abs(at(event.sourceEvent) - from) < 3) {
         update();
         const row = nearest(from);
         return row === null ? null : page.openCard(row);
       }
       page.brushAxis(column.name, event.selection ? page.roundRange(...event.selection.map(scale.invert), pixels, scale.domain()) : null);
     });
-    group.on("pointermove", (event) => event.buttons || page.setCurrent(nearest(d3.pointer(event, group.node())[0])));
+    group.on("pointermove", (event) => event.buttons || page.setCurrent(nearest(at(event))));
     group.on("pointerleave", () => page.setCurrent(null));
     group.on("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -134,7 +136,8 @@
   const showCurrent = () => {
     if (!strip) return;
     const x = strip.scale(page.currentValue(strip.column.name));
-    strip.current.attr("d", Number.isFinite(x) ? `M${x},${MARGIN.top}V${strip.height}` : null);
+    const [left, right] = strip.scale.range();
+    strip.current.attr("d", x >= left && x <= right ? `M${x},${MARGIN.top}V${strip.height}` : null);
   };
 
   page.startStrip = () => {

@@ -70,6 +70,9 @@
     }
   };
 
+  // Can it be compared with the front shown? Goals of a study in work change.
+  page.checkResult = check;
+
   page.readResult = async (file) => {
     if (file.size > MOST) refuse(`it has ${page.short(file.size / 1e6)} MB; ${MOST / 1e6} MB can be read here`);
     const text = await file.text();

@@ -26,6 +26,7 @@
   const nameOf = ({ title, folder, file }) => (title ? `${title} (${folder ? `${folder}/` : ""}${file})` : file);
 
   const verdict = (other) => {
+    if (other.problem) return `It cannot be compared now: ${other.problem}.`;
     if (!other.counts) return "comparing …";
     const { ownBeaten, theirBeaten } = other.counts;
     const csv = other.goals ? "" : " The table does not say its goals and units: they are taken to be those here.";
@@ -76,6 +77,14 @@
   // Counts anew for the front that is shown; who is overtaken by another front gives up.
   const compare = async (other) => {
     const { front } = page;
+    if (!front.rows) return;
+    try {
+      other.problem = null;
+      page.checkResult(other);
+    } catch (error) {
+      other.problem = error.message;
+      return void legend();
+    }
     const counts = await page.compareFronts(other, () => !page.others.includes(other) || page.front !== front);
     if (page.front !== front || !counts) return;
     other.counts = counts;

@@ -77,9 +77,9 @@
     const body = rows.map((row, at) =>
       page.element(
         "tr",
-        { "data-row": row, class: at === 0 ? "is-knee" : "", pointerenter: () => page.setCurrent(row), pointerleave: () => page.setCurrent(null) },
+        { "data-row": row, class: at === 0 && page.isWeighed() ? "is-knee" : "", pointerenter: () => page.setCurrent(row), pointerleave: () => page.setCurrent(null) },
         page.element("td", { class: "number" }, place(at)),
-        page.element("td", {}, page.element("button", { type: "button", class: "pin-name", title: "Open its card", click: () => page.openCard(row) }, page.full(page.designOf(row)))),
+        page.element("td", {}, page.element("button", { type: "button", class: "pin-name", title: "Open its card", click: () => page.openCard(row) }, page.full(page.designOf(row))), page.letterOf(row) ? page.element("span", { class: "pin-letter" }, page.letterOf(row)) : null),
         goals.map(({ column }) => number(column.values[row], column)),
         page.element("td", { class: "number" }, page.short(scores[row])),
         page.element("td", { class: "number", "data-wins": stable ? stable.wins.get(row) || 0 : null }, first(row)),
@@ -150,6 +150,12 @@
       if (page.byId("ranked")) page.byId("ranked").dataset.done = "no";
       page.schedule("weigh", update);
     });
+    const mark = () => {
+      const row = page.state.current ?? page.state.card;
+      for (const line of page.byId("weigh").querySelectorAll("tr[data-row]")) line.classList.toggle("is-current", Number(line.dataset.row) === row);
+    };
+    for (const event of ["current", "card"]) page.events.on(`${event}.ranked`, mark);
+    page.events.on("pins.ranked", () => page.schedule("weigh", update));
     page.events.on("choice.goals", () => page.schedule("goals", page.showGoals));
     const words = () => (page.isWeighed() ? `first by weights: design ${page.designOf(page.chosenRow())}` : "equal weights");
     let said = words();

@@ -75,7 +75,7 @@
     // What a first front lacks may be on the exact one: until then the card stands as it is, and nothing on it can be pressed.
     state.awaited = row < 0 && page.awaits() ? design : null;
     const card = page.byId("card");
-    card.inert = state.awaited !== null;
+    page.holdCard(state.awaited !== null);
     if (!started && page.front.rows) begin();
     else if (started) page.events.call("front");
     for (const id of ["matrix-section", "parallel-section", "table-section", "bar"]) page.byId(id).hidden = !page.front.rows;
@@ -88,7 +88,7 @@
   const putCardAway = () => {
     const card = page.byId("card");
     if (page.state.awaited !== null && !card.hidden) page.closeLostCard();
-    card.inert = false;
+    page.holdCard(false);
   };
 
   // The views, once there is something to see.

@@ -33,9 +33,11 @@
     const box = page.byId("all-outputs");
     if (asked === null || !box) return;
     const design = page.numberOfDesign(asked);
+    // What is shown may be of the study before a change.
+    const set = asked.set ?? page.shownSet;
     try {
-      const told = await page.askOnce("/design", { set: asked.set ?? page.changeList(), design });
-      if (of() === null || page.numberOfDesign(of()) !== design || of().set !== asked.set || !page.byId("all-outputs")) return;
+      const told = await page.askOnce("/design", { set, design });
+      if (of() === null || page.numberOfDesign(of()) !== design || (of().set ?? page.shownSet) !== set || !page.byId("all-outputs")) return;
       page.knowMore(of(), told);
       const known = new Set(asked.values ? asked.values.keys() : page.front.shown.map((column) => column.name));
       const lines = told.outputs.filter((output) => !known.has(output.name)).map((output) =>
@@ -53,7 +55,7 @@
     const values = new Map([...Object.entries(told.inputs), ...told.outputs.map(({ name, value }) => [name, value ?? NaN])]);
     const entry = (column) => {
       const value = values.get(column.name);
-      return page.pinEntry(column, column.words ? column.words.indexOf(value) : value, page.short(value));
+      return page.pinEntry(column, column.words ? column.words.indexOf(String(value)) : value, page.short(value));
     };
     const shown = new Map(page.front.shown.filter((column) => values.has(column.name)).map(entry));
     return { design, set, values: shown, isFeasible: told.feasible, status: told.status, section: told.section, givens: told.givens, inputs: told.described };
@@ -62,9 +64,11 @@
 
   // The card of a design that the exact front has not, or no more, stays: with what it is now, and why it is not there.
   page.keepLost = async (design, set) => {
-    const card = page.byId("card");
+    const { known: shown } = page.state;
+    // The certified front has not got it either.
+    if (shown && shown.design === design && String(shown.set) === String(set)) return;
     page.state.awaited = design;
-    card.inert = true;
+    page.holdCard(true);
     const isOld = () => page.state.awaited !== design || String(page.shownSet) !== String(set);
     try {
       const known = await askKnown({ design, set });
@@ -74,7 +78,7 @@
       if (isOld()) return;
       page.state.awaited = null;
       page.closeLostCard();
-      card.inert = false;
+      page.holdCard(false);
     }
   };
 

@@ -27,14 +27,27 @@
     return (await page.copyText(command)) ? "command copied" : "select the command to copy it";
   });
 
+  // A command that opens this very view again: ranges, pins, weights, columns and the open card, beside what is changed.
+  page.viewCommand = (evaluate) => {
+    const explore = evaluate.replace(" eval ", " explore ").replace(" --design {design}", "");
+    const view = page.viewText().replace(/["'!`$\\]/g, (sign) => `%${sign.charCodeAt(0).toString(16)}`);
+    return view ? `${explore} --view "${view}"` : explore;
+  };
+  const copyView = withStudy("not copied", async ({ evaluate }) => {
+    const command = page.viewCommand(evaluate);
+    page.byId("command").textContent = command;
+    return (await page.copyText(command)) ? "command of this view copied" : "select the command to copy it";
+  });
+
   const bar = () => {
     const live = page.byId("live");
     live.hidden = false;
     const ghost = page.element("input", { type: "checkbox", id: "ghost", checked: true, change: (event) => page.showGhost(event.target.checked) });
-    const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: copyCommand }, "Copy command");
+    const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", title: "The sweep of this study", click: copyCommand }, "Copy command");
+    const view = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-view", title: "A command that opens this very view again, with ranges, pins and weights", click: copyView }, "Copy view");
     live.replaceChildren(
       page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
-      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, view, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
       page.element("div", { class: "command-line" }, page.element("span", { id: "done", class: "no-print", role: "status" }), page.element("code", { id: "command", "data-testid": "command", tabindex: 0 })),
     );
   };
