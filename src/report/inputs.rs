@@ -126,7 +126,7 @@ mod tests {
         }
         // A sampled design's number says nothing of its levels.
         let sampled = "[design]\ngroove_angle_deg = { from = 20, to = 24 }\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1000\nseed = 7\n[objectives]\naxial_force_N = \"min\"\n";
-        let sampled = study_of(&model, sampled).unwrap_or_else(|error| panic!("{error}"));
+        let sampled = study_of(&model, sampled).unwrap_or_else(|error| panic!("{error:?}"));
         assert_eq!(super::axes(&sampled), Value::Null);
     }
 
