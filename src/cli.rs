@@ -253,7 +253,7 @@ pub struct ExploreArgs {
     /// Begin with this change. May be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// Open the page with this view: what "Copy view" on the page gives, its ranges, pins, weights and columns
+    /// Open the page with this view: what "Copy view" on the page gives: changes, ranges, pins, weights and columns
     #[arg(long, value_name = "VIEW", value_parser = page_view)]
     pub view: Option<String>,
     /// Port to listen on [default: any that is free]

@@ -23,9 +23,9 @@ pub fn of_design(plan: &Plan, design: u64) -> Map<String, Value> {
     places.iter().filter_map(same).map(|(place, value)| (model.outputs[place].name.clone(), number(value))).collect()
 }
 
-/// Those of the designs of a front: their names, and of each design its numbers; `null` where no formula gives such an input. Where they
+/// Those of some designs: their names, and of each design its numbers; `null` where no formula gives such an input. Where they
 /// would be too many the last designs have none.
-pub fn of_front(plan: &Plan, designs: &[u64]) -> Value {
+pub fn of_designs(plan: &Plan, designs: &[u64]) -> Value {
     let names: Vec<String> = designs.first().map_or_else(Vec::new, |&design| of_design(plan, design).into_iter().map(|it| it.0).collect());
     if names.is_empty() {
         return Value::Null;
@@ -92,15 +92,15 @@ mod tests {
         close("teeth_in_mesh", 18.0);
         close("land_half_angle_deg", 64.8 / 36.0);
         close("slack_tension_N", 280.0 - 13_000.0 / (tip + 0.686));
-        let front = of_front(&plan, &[0, 5]);
+        let front = of_designs(&plan, &[0, 5]);
         assert_eq!(front["names"].as_array().map(Vec::len), Some(told.len()));
         assert_eq!(front["of"].as_object().map(Map::len), Some(2));
     }
 
     #[test]
     fn without_formulas_of_inputs_there_are_none() {
-        assert_eq!(of_front(&shipped("metal-grid"), &[0]), Value::Null);
+        assert_eq!(of_designs(&shipped("metal-grid"), &[0]), Value::Null);
         // A clamping force that follows the torque is no dimension.
-        assert_eq!(of_front(&shipped("metal-cvt"), &[0]), Value::Null);
+        assert_eq!(of_designs(&shipped("metal-cvt"), &[0]), Value::Null);
     }
 }

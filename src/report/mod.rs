@@ -28,6 +28,7 @@ use crate::reduce::Reported;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
 use inputs::{axes, drawn, inputs};
+use rustc_hash::FxHashSet;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::time::Duration;
@@ -136,8 +137,6 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "constraints": constraints,
         "front": front.as_ref().map(|it| with_knee(it, &summary)),
         "around": around,
-        "givens": front.as_ref().map(|it| givens::of_front(plan, &it.designs)),
-        "sections": front.as_ref().map(|it| sections::of_front(plan, &it.designs)),
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,
         "tally": summary["tally"],
@@ -152,8 +151,22 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "variants": variants(folder, plan)?,
     });
     Reported::page(&Folder { path: folder, plan, feasible }, data.as_object_mut().expect("it is one"))?;
+    let pictured = pictured_designs(front.as_ref(), &[&data["top"], &data["variants"]]);
+    (data["givens"], data["sections"]) = (givens::of_designs(plan, &pictured), sections::of_designs(plan, &pictured));
     let rows = |key: &str| data["front"][key].as_u64().map_or(0, |it| usize::try_from(it).unwrap_or(usize::MAX));
     Ok(Page { html: page::page(&study.title, &data), designs: rows("rows"), of: rows("of"), complete: data["front"]["complete"] != false })
+}
+
+/// The designs whose cards have drawings: those of the front, and behind them those of the lists, each once.
+fn pictured_designs(front: Option<&front::ShownFront>, lists: &[&Value]) -> Vec<u64> {
+    let of_list = |list: &&Value| -> Vec<u64> {
+        let place = list["columns"].as_array().and_then(|it| it.iter().position(|name| name == "design_index"));
+        let rows = list["rows"].as_array().into_iter().flatten();
+        place.map_or_else(Vec::new, |place| rows.filter_map(|row| row[place].as_str()?.parse().ok()).collect())
+    };
+    let mut known = FxHashSet::default();
+    let all = front.into_iter().flat_map(|it| it.designs.iter().copied()).chain(lists.iter().flat_map(of_list));
+    all.filter(|&design| known.insert(design)).collect()
 }
 
 fn model_json(study: &Study) -> Value {

@@ -18,9 +18,9 @@ pub fn of_design(plan: &Plan, design: u64) -> Option<Value> {
     Some(json!(outline.parts.iter().map(part).collect::<Vec<_>>()))
 }
 
-/// The sections of the designs of a front, each once, and which design has which; `null` for a model without sections. Where they would take
+/// The sections of some designs, each once, and which design has which; `null` for a model without sections. Where they would take
 /// too much room the last designs have none.
-pub fn of_front(plan: &Plan, designs: &[u64]) -> Value {
+pub fn of_designs(plan: &Plan, designs: &[u64]) -> Value {
     if plan.study.model.pulley_of(&plan.space.inputs(0, 0)).is_none() {
         return Value::Null;
     }
@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn designs_of_one_section_share_its_outline() {
         let plan = plan("pulley", "[design]\nthickness_mm = [2, 2.2]\npower_kW = [2, 3]\n[objectives]\nmass_g = \"min\"\n");
-        let told = of_front(&plan, &[0, 1, 2, 3]);
+        let told = of_designs(&plan, &[0, 1, 2, 3]);
         assert_eq!(told["outlines"].as_array().map(Vec::len), Some(2));
         let of = |design: u64| &told["of"][design.to_string()];
         let thickness = |design: u64| plan.space.inputs(design, 0)[plan.study.design[0].inputs()[0]];
@@ -71,6 +71,6 @@ mod tests {
     #[test]
     fn other_models_have_none() {
         let plan = plan("metal-cvt", "[design]\nband_count = [6, 9]\n[objectives]\naxial_force_N = \"min\"\n");
-        assert_eq!(of_front(&plan, &[0]), Value::Null);
+        assert_eq!(of_designs(&plan, &[0]), Value::Null);
     }
 }

@@ -119,6 +119,22 @@ fn a_design_that_is_not_on_the_front_is_drawn_pinned_printed_and_in_the_address(
 
 #[test]
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn listed_designs_are_drawn_with_what_their_models_and_formulas_say() {
+    // The section of a pulley, and dimensions that formulas give.
+    for name in ["pulley-design", "timing-tension"] {
+        let swept = Swept::shipped(name);
+        let mut browser = Browser::open(&swept.page(), "");
+        browser.evaluate("[...document.querySelectorAll('#top tbody tr')].find((it) => beltspace.page.rowOf(it.dataset.row) < 0).click()");
+        let card = browser.text("document.querySelector('#card').innerText");
+        assert!(card.contains("not on the front") && card.contains("Drawn to scale"), "{name}: {card}");
+        assert!(!card.contains("Not drawn") && !card.contains("what lies between groove and bore"), "{name}: {card}");
+        assert_eq!(browser.number("document.querySelectorAll('#card svg.drive').length"), 1.0, "{name}");
+        assert_eq!(browser.complaints, Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn a_saved_picture_has_of_a_list_what_the_page_shows_of_it_and_the_names_of_other_results() {
     let swept = Swept::shipped("metal-cvt");
     let mut browser = Browser::open(&swept.page(), "");

@@ -9,12 +9,9 @@
   let defaults = { matrix: "", parallel: "", colour: null };
   let written = null;
 
-  // What the address says, without what is changed in a study in work.
-  page.viewText = () => textOf().join("&");
   page.writeAddress = () => {
-    const parts = textOf();
-    if (page.changesText?.()) parts.push(`s=${page.changesText()}`);
-    const hash = parts.length ? `#${parts.join("&")}` : "";
+    const text = page.viewText();
+    const hash = text ? `#${text}` : "";
     if (hash === location.hash || hash === written) return;
     written = hash;
     // Some browsers refuse to change the address of a local file: then the state is not kept.
@@ -25,7 +22,7 @@
     }
   };
 
-  const textOf = () => {
+  page.viewText = () => {
     const { state } = page;
     const parts = [];
     const add = (key, text) => text && parts.push(`${key}=${text}`);
@@ -47,7 +44,8 @@
       add("a", page.wishesText());
       add("wn", page.nearText());
     }
-    return parts;
+    if (page.changesText) add("s", page.changesText());
+    return parts.join("&");
   };
 
   const parseRange = (text) => {

@@ -152,6 +152,13 @@ page.keepFocus = (box, draw, otherwise = null) => {
   return result;
 };
 
+// The same where details may be open: they stay so.
+page.keepOpen = (box, draw) => {
+  const open = [...box.querySelectorAll("details")].map((it) => it.open);
+  page.keepFocus(box, draw);
+  box.querySelectorAll("details").forEach((it, at) => (it.open = open[at] ?? it.open));
+};
+
 // Buttons of which one is a stop for the tab key; the left and the right arrow go on from there. The buttons above the lines of a table are
 // reached from these with the upper arrow: `below` is the first line, if there is any, which is the stop then.
 page.oneStop = (box, selector, below = null) => {
@@ -160,7 +167,7 @@ page.oneStop = (box, selector, below = null) => {
   buttons.forEach((button, at) => {
     button.addEventListener("focus", () => stopAt(button));
     button.addEventListener("keydown", (event) => {
-      const next = { ArrowRight: buttons[at + 1], ArrowLeft: buttons[at - 1], Home: buttons[0], End: buttons[buttons.length - 1], ArrowDown: below };
+      const next = { ArrowRight: buttons[at + 1], ArrowLeft: buttons[at - 1], Home: buttons[0], End: buttons[buttons.length - 1], ...(below ? { ArrowDown: below } : {}) };
       if (!(event.key in next)) return;
       next[event.key]?.focus();
       event.preventDefault();

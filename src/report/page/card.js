@@ -170,6 +170,9 @@
   };
 
   const button = (id, label, text, click, disabled) => page.element("button", { type: "button", id, "aria-label": label, title: label, click, disabled }, text);
+  // The design whose card this is: of another front that came meanwhile it has another row.
+  page.pinCard = () => page.pin(page.state.card ?? page.state.known);
+
   // For cards of designs that are not on the front.
   page.cardParts = { section, table, valueCell, command, evaluateOf, boundsOf, button };
 
@@ -185,7 +188,7 @@
     const title = page.element("h2", { id: "card-title" }, named(row));
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
     const pinned = page.isPinned(row);
-    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && !page.canPin()), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
+    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", page.pinCard, !pinned && !page.canPin()), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
     return [page.element("div", { class: "card-head" }, page.element("div", {}, study, title, place), buttons), objectives(row), margins(row), page.tradeoffSection(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
@@ -194,12 +197,13 @@
     if (page.byId("main").clientWidth !== width) page.events.call("layout");
   };
 
-  // A cell of the matrix may have been redrawn in the meantime; then take the new one.
+  // What opened it may have been redrawn in the meantime; then take the new one.
   const returnFocus = () => {
     if (!opener) return;
-    const { x, y } = opener.dataset;
-    const again = x && !opener.isConnected ? document.querySelector(`.cell[data-x="${CSS.escape(x)}"]${y ? `[data-y="${CSS.escape(y)}"]` : ""}`) : opener;
-    if (again && again.isConnected) again.focus({ preventScroll: true });
+    const { x, y, focus } = opener.dataset;
+    const selector = focus ? `[data-focus="${CSS.escape(focus)}"]` : x ? `.cell[data-x="${CSS.escape(x)}"]${y ? `[data-y="${CSS.escape(y)}"]` : ""}` : opener.id ? `#${CSS.escape(opener.id)}` : null;
+    const again = opener.isConnected || !selector ? opener : document.querySelector(selector);
+    if (again?.isConnected) again.focus({ preventScroll: true });
   };
 
   page.openCard = (row, takesFocus = true) => {
@@ -286,7 +290,7 @@
       else if (page.state.card !== null) page.keepFocus(card, () => card.replaceChildren(...build(page.state.card)));
       else page.keepFocus(card, () => card.replaceChildren(...rebuild()));
     };
-    card.addEventListener("pointerdown", () => (pressed.is = true));
+    card.addEventListener("pointerdown", (event) => (pressed.is = event.button === 0));
     const release = () => {
       if (!pressed.is) return;
       // After the click.
@@ -304,7 +308,7 @@
       if (page.byId("card").hidden || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();
       else if (page.state.card === null && !page.state.known) return;
-      else if (event.key === "p" && card.contains(event.target)) page.pin(page.state.card ?? page.state.known);
+      else if (event.key === "p" && card.contains(event.target)) page.byId("card-pin")?.click();
       else if (page.state.card === null) return;
       else if (!page.byId("card").contains(event.target)) return;
       else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);

@@ -4,7 +4,7 @@
   const HEIGHT = 240;
   const MARGIN = { left: 82, right: 32, top: 10, bottom: 46 };
 
-  const draw = (histogram) => {
+  const draw = (histogram, number) => {
     const { of, unit, from, to, designs } = histogram;
     const svg = d3.create("svg").attr("viewBox", `0 0 ${WIDTH} ${HEIGHT}`).attr("role", "img").attr("aria-label", `Histogram of ${of}`);
     const x = d3.scaleLinear([from[0], to[to.length - 1]], [MARGIN.left, WIDTH - MARGIN.right]);
@@ -34,17 +34,17 @@
       const pins = page.pins().map((pin) => ({ letter: pin.letter, x: x(page.placeIn(pin.values, column)), y: MARGIN.top + 8 })).filter((pin) => isWithin(pin.x));
       page.drawLetters(marks, pins, [MARGIN.left, MARGIN.top, WIDTH - MARGIN.right, HEIGHT - MARGIN.bottom]);
     };
-    for (const event of ["current", "card", "pins"]) page.events.on(`${event}.histogram-${of}`, mark);
+    for (const event of ["current", "card", "pins"]) page.events.on(`${event}.histogram${number}`, mark);
     mark();
     svg.on("pointermove", hit).on("pointerleave", (event) => page.tip(event, ""));
     return svg.node();
   };
 
-  const figure = (histogram) => {
+  const figure = (histogram, number) => {
     const { of, doc, below, above, designs } = histogram;
     const total = d3.sum(designs);
     const outside = [below ? `${page.count(below)} below` : "", above ? `${page.count(above)} above` : ""].filter(Boolean).join(", ");
-    const plot = total ? draw(histogram) : page.element("p", { class: "notice" }, "No feasible design in this range.");
+    const plot = total ? draw(histogram, number) : page.element("p", { class: "notice" }, "No feasible design in this range.");
     const caption = page.element("figcaption", {}, page.element("div", { class: "title-line" }, page.element("strong", {}, of), total ? page.saveButtonsOf(`the histogram of ${of}`, `histogram-${of}`, () => plot) : null), doc ? ` ${doc}` : "", page.element("div", { class: "muted" }, `${page.count(total)} designs in the range${outside ? `, ${outside} it` : ", none outside"}.`));
     return page.element("figure", { class: "figure", "data-histogram": of }, caption, plot);
   };

@@ -62,7 +62,7 @@
     const open = chosen === null ? null : page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(page.chosenRow()) }, `Open ${word}: design ${page.full(page.designOf(chosen))}`);
     return page.element("div", { class: "goals" }, [objectives(), question(false), open].filter(Boolean));
   };
-  page.showGoals = () => page.byId("overview").querySelector(".goals")?.replaceWith(goals());
+  page.showGoals = () => page.keepFocus(page.byId("overview"), () => page.byId("overview").querySelector(".goals")?.replaceWith(goals()));
 
   page.startOverview = () => {
     const { data, front } = page;
@@ -89,7 +89,7 @@
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
       front && front.rows && front.objectives.length ? goals() : page.element("div", { class: "goals" }, [question(true)].filter(Boolean)),
     ];
-    page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== ""));
+    page.keepOpen(page.byId("overview"), () => page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== "")));
   };
 
   page.startStudy = () => {
@@ -97,11 +97,12 @@
     if (!study || !study.text) return;
     const section = page.byId("study");
     section.hidden = false;
-    section.replaceChildren(
+    const parts = [
       page.element("h2", { id: "study-title" }, "Study"),
       page.element("details", {}, page.element("summary", {}, `${study.file || "study.toml"}`, study.hash ? page.element("span", { class: "muted" }, ` hash ${study.hash.slice(0, 16)}…`) : ""), page.element("pre", { tabindex: 0 }, study.text)),
       inputs && inputs.length ? page.element("details", {}, page.element("summary", {}, "Inputs of the model"), inputTable(inputs)) : "",
-    );
+    ];
+    page.keepOpen(section, () => section.replaceChildren(...parts));
   };
 
   const inputTable = (inputs) => {

@@ -58,7 +58,8 @@
   page.pinsText = () => [...pins, ...awaited].map((pin) => `${pin.design}${changesOf(pin)}`).join(",");
   page.readPins = (text) => {
     pins = [];
-    const isHere = ({ design, set }) => (isOf({ set }, askedSet()) ? page.awaits() || (page.front && (page.rowOf(design) >= 0 || page.knownOf(design))) : Boolean(page.askPin));
+    // The engine knows every design.
+    const isHere = ({ design, set }) => Boolean(page.askPin) || (isOf({ set }, askedSet()) && page.front && (page.rowOf(design) >= 0 || page.knownOf(design)));
     const given = [...new Set((text || "").split(",").filter(Boolean))].map((entry) => {
       const [design, changes] = entry.split("~");
       return { design, set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };

@@ -63,7 +63,7 @@
     const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
     note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
     page.byId("csv").disabled = !rows.length;
-    oneStop();
+    oneStop(body.contains(document.activeElement) ? document.activeElement : null);
     page.oneStop(heads, "button", body.querySelector("tr"));
     markCurrent();
   };

@@ -43,7 +43,7 @@
     const item = (other) => page.element("li", { "data-testid": `other ${other.kind}` }, swatch(other.kind), page.element("strong", {}, nameOf(other)), ` ${verdict(other)}`, page.element("button", { type: "button", class: "back no-print", "aria-label": `Take away ${nameOf(other)}`, title: "Take it away", click: () => remove(other) }, "×"));
     const list = box.querySelector("ul");
     list.hidden = !page.others.length;
-    list.replaceChildren(...page.others.map(item));
+    page.keepFocus(list, () => list.replaceChildren(...page.others.map(item)));
     box.querySelector("button[data-testid=load-other]").disabled = page.others.length >= MOST;
     // What is over the plots is named on paper too; the button is not.
     box.classList.toggle("no-print", !page.others.length);

@@ -61,7 +61,8 @@
     Object.assign(data, { objectives: told.objectives, constraints: told.constraints, scenarios: told.scenarios });
     const { state } = page;
     // A card of a design that is not on the front follows the study as any other does.
-    const followed = state.known && sameList(state.known.set, page.shownSet) ? state.known.design : null;
+    const isOfStudy = (known) => [page.shownSet, question.set].some((set) => sameList(known.set, set));
+    const followed = state.known && isOfStudy(state.known) ? state.known.design : null;
     const design = page.front && state.card !== null ? page.designOf(state.card) : (state.awaited ?? followed);
     page.front = page.frontOf(data, told.front, buffer);
     // It is of what was asked before.

@@ -9,7 +9,7 @@
     const row = page.state.card ?? (page.front ? page.chosenRow() : null);
     if (asking) asking.abort();
     if (page.state.awaited !== null) return null;
-    if (row === null || row === undefined) return (section.hidden = true);
+    if (!known && (row === null || row === undefined)) return (section.hidden = true);
     section.hidden = false;
     const design = known ? known.design : page.designOf(row);
     const title = `Around design ${design}${page.state.card === null && !known ? ` (${page.chosenWord()})` : ""}`;
@@ -67,7 +67,7 @@
     const { known: shown } = page.state;
     // The certified front has not got it either.
     if (shown && shown.design === design && String(shown.set) === String(set)) return;
-    page.state.awaited = design;
+    Object.assign(page.state, { card: null, awaited: design });
     page.holdCard(true);
     const isOld = () => page.state.awaited !== design || String(page.shownSet) !== String(set);
     try {

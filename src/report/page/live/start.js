@@ -27,14 +27,13 @@
     return (await page.copyText(command)) ? "command copied" : "select the command to copy it";
   });
 
-  // A command that opens this very view again: ranges, pins, weights, columns and the open card, beside what is changed.
-  page.viewCommand = (evaluate) => {
+  // A command that opens this very view again. What is changed on the page is part of the view, as pins tell of what they are by it; what the
+  // program was started with is not.
+  const copyView = withStudy("not copied", async () => {
+    const { evaluate } = await page.askOnce("/study", { set: [] });
     const explore = evaluate.replace(" eval ", " explore ").replace(" --design {design}", "");
     const view = page.viewText().replace(/["'!`$\\]/g, (sign) => `%${sign.charCodeAt(0).toString(16)}`);
-    return view ? `${explore} --view "${view}"` : explore;
-  };
-  const copyView = withStudy("not copied", async ({ evaluate }) => {
-    const command = page.viewCommand(evaluate);
+    const command = view ? `${explore} --view "${view}"` : explore;
     page.byId("command").textContent = command;
     return (await page.copyText(command)) ? "command of this view copied" : "select the command to copy it";
   });
