@@ -193,6 +193,15 @@ fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() 
     browser.wait(&format!("{tick} !== {upright:?}"));
     assert_eq!(browser.number("beltspace.selected().length"), expected as f64, "how an axis stands selects nothing");
     browser.click_on("#clear");
+    // Dragged by its title onto the place of the fourth one.
+    browser.rectangle(&format!("#parallel .axis-head[data-axis={name:?}] .axis-name"));
+    let places = browser.evaluate(&format!(
+        "[{name:?}, beltspace.state.parallel[3]].map((it) => document.querySelector(`#parallel .axis-head[data-axis=\"${{it}}\"] .axis-name`).getBoundingClientRect()) \
+         .map((it) => [it.left + it.width / 2, it.top + it.height / 2])"
+    ));
+    let [from, to]: [[f64; 2]; 2] = serde_json::from_value(places).expect("two places");
+    browser.drag(from, [to[0], from[1]]);
+    browser.wait(&format!("beltspace.state.parallel.indexOf({name:?}) === 3"));
     // Keys only: into a cell of the matrix, to a point, its card, the next card, and out.
     browser.evaluate("document.querySelector('#splom .cell').focus()");
     browser.key("ArrowRight", 39);

@@ -51,7 +51,9 @@ fn the_focus_stays_where_it_was_when_a_part_of_the_page_is_drawn_anew() {
     assert_eq!(browser.text("beltspace.state.parallel[0]"), axis);
     assert!(focused(&mut browser).ends_with(&axis), "{}", focused(&mut browser));
     // Buttons of all axes are one stop, and so is a table with its head; arrows go on.
-    for stop in ["#parallel .axis-buttons button", "#designs :is(button, tr)"] {
+    browser.evaluate("[0, 1].forEach((row) => beltspace.page.pin(row)); document.querySelector('#weigh details').open = true");
+    browser.wait("document.querySelector('#ranked .pin-name')");
+    for stop in ["#parallel .axis-buttons button", "#designs :is(button, tr)", ".pins :is(button, tr)", "#ranked :is(button, tr, div)"] {
         assert_eq!(browser.number(&format!("document.querySelectorAll({:?}).length", format!("{stop}[tabindex='0']"))), 1.0, "{stop}");
     }
     browser.evaluate("document.querySelector('#designs tbody tr').focus()");
@@ -86,6 +88,15 @@ fn a_live_page_keeps_the_focus_and_a_press_while_the_front_changes() {
         browser.evaluate(&format!("beltspace.change({{ 'constraints.slip_margin.min': '{value}' }})"));
         answered(&mut browser);
     }
+    // Everything at once, and back.
+    browser.evaluate(COUNT);
+    browser.press("#reset");
+    answered(&mut browser);
+    assert_eq!(browser.evaluate("beltspace.page.changeList()"), serde_json::json!([]));
+    assert_eq!(focused(&mut browser), "undo");
+    browser.evaluate(COUNT);
+    browser.press("#undo");
+    answered(&mut browser);
     // Undo, until there is nothing left to undo.
     for _ in 0..2 {
         browser.evaluate(COUNT);

@@ -131,6 +131,13 @@ fn another_result_is_laid_over_this_one_and_compared() {
         assert_eq!(browser.number("document.querySelectorAll('#others li').length + beltspace.page.others.length"), 0.0);
     }
     browser.picture("others-refused");
+    // Dropped on the plots.
+    browser.evaluate(&format!(
+        "(() => {{ const dropped = new DataTransfer(); dropped.items.add(new File([{}], 'dropped.csv')); \
+         document.querySelector('#splom').dispatchEvent(new DragEvent('drop', {{ dataTransfer: dropped, bubbles: true, cancelable: true }})); }})()",
+        serde_json::json!(table)
+    ));
+    browser.wait("document.querySelector('#others li')?.innerText.includes('dropped.csv')");
     // Counting pixels, as this test does and the page does not, is told to be slow.
     browser.complaints.retain(|it| !it.contains("willReadFrequently"));
     // Firefox tells of a file that cannot be unpacked, which the page says too.

@@ -159,15 +159,17 @@ page.keepOpen = (box, draw) => {
   box.querySelectorAll("details").forEach((it, at) => (it.open = open[at] ?? it.open));
 };
 
-// Buttons of which one is a stop for the tab key; the left and the right arrow go on from there. The buttons above the lines of a table are
-// reached from these with the upper arrow: `below` is the first line, if there is any, which is the stop then.
-page.oneStop = (box, selector, below = null) => {
+// Buttons of which one is a stop for the tab key; the left and the right arrow go on from there, or the upper and the lower one where they
+// stand below each other. The buttons above the lines of a table are reached from these with the upper arrow: `below` is the first line, if
+// there is any, which is the stop then.
+page.oneStop = (box, selector, { below = null, isColumn = false } = {}) => {
+  const [forth, back] = isColumn ? ["ArrowDown", "ArrowUp"] : ["ArrowRight", "ArrowLeft"];
   const buttons = [...box.querySelectorAll(selector)].filter((it) => !it.disabled);
   const stopAt = (button) => buttons.forEach((it) => it.setAttribute("tabindex", it === button && !below ? 0 : -1));
   buttons.forEach((button, at) => {
     button.addEventListener("focus", () => stopAt(button));
     button.addEventListener("keydown", (event) => {
-      const next = { ArrowRight: buttons[at + 1], ArrowLeft: buttons[at - 1], Home: buttons[0], End: buttons[buttons.length - 1], ...(below ? { ArrowDown: below } : {}) };
+      const next = { [forth]: buttons[at + 1], [back]: buttons[at - 1], Home: buttons[0], End: buttons[buttons.length - 1], ...(below ? { ArrowDown: below } : {}) };
       if (!(event.key in next)) return;
       next[event.key]?.focus();
       event.preventDefault();

@@ -154,9 +154,10 @@
     const shown = section.dataset.only === "yes" ? rows.filter((name) => new Set(pins.map((pin) => told(pin.values.get(name)))).size > 1) : rows;
     section.replaceChildren(
       page.element("div", { class: "title-line" }, page.element("h2", { id: "pins-title" }, "Pinned designs"), page.element("label", { class: "no-print" }, same, " only what differs")),
-      page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Pinned designs side by side" }, page.element("table", { class: "pins", "data-testid": "pins-table" }, page.element("thead", {}, page.element("tr", {}, page.element("th", { scope: "col" }, "quantity"), page.element("th", { scope: "col" }, "unit"), pins.map(head))), page.element("tbody", {}, shown.map(line)))),
+      page.element("div", { class: "scroll", role: "region", "aria-label": "Pinned designs side by side" }, page.element("table", { class: "pins", "data-testid": "pins-table" }, page.element("thead", {}, page.element("tr", {}, page.element("th", { scope: "col" }, "quantity"), page.element("th", { scope: "col" }, "unit"), pins.map(head))), page.element("tbody", {}, shown.map(line)))),
       pins.length === 1 ? page.element("p", { class: "hint no-print" }, "Pin another design, from its card, to compare them.") : "",
     );
+    page.oneStop(section, "thead button");
   };
 
   page.startPins = () => {

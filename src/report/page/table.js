@@ -64,7 +64,7 @@
     note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
     page.byId("csv").disabled = !rows.length;
     oneStop(body.contains(document.activeElement) ? document.activeElement : null);
-    page.oneStop(heads, "button", body.querySelector("tr"));
+    page.oneStop(heads, "button", { below: body.querySelector("tr") });
     markCurrent();
   };
 

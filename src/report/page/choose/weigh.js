@@ -85,7 +85,7 @@
         page.element("td", { class: "number", "data-wins": stable ? stable.wins.get(row) || 0 : null }, first(row)),
       ),
     );
-    return page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "The first designs" }, page.element("table", { class: "ranked" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, body)));
+    return page.element("div", { class: "scroll", role: "region", "aria-label": "The first designs" }, page.element("table", { class: "ranked" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, body)));
   };
 
   const wished = () => {
@@ -107,6 +107,7 @@
     const rows = [...order, ...often];
     const focused = box.contains(document.activeElement) ? document.activeElement.textContent : null;
     box.replaceChildren(page.isWeighed() ? "" : plain("By this score they come in this order:"), table(rows, stable), page.element("p", { class: "hint" }, `${part}${wished()}${wordsOf(stable, rows)}`));
+    page.oneStop(box, ".pin-name", { isColumn: true });
     if (focused) [...box.querySelectorAll("button")].find((button) => button.textContent === focused)?.focus();
     box.dataset.done = stable ? "yes" : "no";
   };
