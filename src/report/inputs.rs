@@ -46,8 +46,8 @@ fn described(study: &Study, number: usize, input: &Input) -> Value {
 /// Most numbers and texts that a page holds of the design axes.
 const MOST_LEVELS: u64 = 20_000;
 
-/// The levels of the design axes, with which a page knows what the number of a design stands for: of each axis how many it has, and of every
-/// input and label their values. `null` where a number stands for a sampled design, or if they would be too many.
+/// The levels of the design axes, with which a page knows what the number of a design stands for: of each axis how many it has, and of
+/// every input and label their values. `null` where a number stands for a sampled design, or if they would be too many.
 pub fn axes(study: &Study) -> Value {
     let width = |axis: &Axis| (axis.inputs().len() + study.labels_of(axis).count()) as u64;
     if study.sample.is_some() || study.design.iter().map(|axis| axis.count() * width(axis)).sum::<u64>() > MOST_LEVELS {

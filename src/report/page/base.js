@@ -135,8 +135,9 @@ page.afterPause = (pause, work) => {
   };
 };
 
-// Draws a part of the page anew. Who had the focus in it has it afterwards: on the same control, by what `data-focus` or its id calls it, on
-// another of the same thing (`data-focus` is an action and a thing), or on the one that has come to its place; without any, on `otherwise`.
+// Draws a part of the page anew. Who had the focus in it has it afterwards: on the same control, by what `data-focus` or its id calls it,
+// on another of the same thing (`data-focus` is an action and a thing), or on the one that has come to its place; without any, on
+// `otherwise`.
 page.keepFocus = (box, draw, otherwise = null) => {
   const focused = box.contains(document.activeElement) && document.activeElement !== box ? document.activeElement : null;
   const stops = () => [...box.querySelectorAll("a[href], button, input, select, summary, [tabindex]")].filter((it) => !it.disabled && it.getClientRects().length);

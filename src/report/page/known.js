@@ -1,5 +1,5 @@
-// Designs that are not on the front shown, such as those of a map's cell, of a list, or of other changes of the study: what is known of one,
-// kept as pins keep it, and its card.
+// Designs that are not on the front shown, such as those of a map's cell, of a list, or of other changes of the study: what is known of
+// one, kept as pins keep it, and its card.
 {
   const column = (name) => page.front?.byName.get(name) ?? (page.data.inputs || []).find((it) => it.name === name);
 

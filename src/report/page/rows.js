@@ -1,4 +1,5 @@
-// Lines of a table that open something: one stop for the tab key, arrows go from line to line and to the buttons above, Enter and a click open.
+// Lines of a table that open something: one stop for the tab key, arrows go from line to line and to the buttons above, Enter and a click
+// open.
 page.openableRows = (body, open) => {
   const lineOf = (event) => event.target.closest("tr[data-row]");
   const stopAt = (line) => {
