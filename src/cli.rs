@@ -232,12 +232,12 @@ pub struct SweepArgs {
     pub perturb: Vec<String>,
 }
 
-/// The part of an address behind its `#`, without signs that an address cannot have.
+/// The part of an address behind its `#`. Characters that an address or a quoted word cannot have are refused.
 fn page_view(text: &str) -> Result<String, String> {
     let text = text.trim_start_matches('#');
     match text.chars().find(|&it| !it.is_ascii_graphic() || "\"'<>`\\".contains(it)) {
         Some(wrong) => {
-            Err(format!("a view has no {wrong:?}; copy it whole, with the button \"Copy view\" of the page, and put it in quotes"))
+            Err(format!("a view cannot have {wrong:?} in it; copy the whole command with \"Copy view\" on the page, and keep its quotes"))
         }
         None => Ok(text.to_owned()),
     }
@@ -253,7 +253,7 @@ pub struct ExploreArgs {
     /// Begin with this change. May be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// Open the page with this view: what "Copy view" on the page gives: changes, ranges, pins, weights and columns
+    /// Open the page with the changes, ranges, pins, weights and columns that "Copy view" on the page copied
     #[arg(long, value_name = "VIEW", value_parser = page_view)]
     pub view: Option<String>,
     /// Port to listen on [default: any that is free]

@@ -75,7 +75,7 @@ page.seconds = (s) => {
   return s < 7200 ? `${Number((s / 60).toPrecision(3))} min` : `${Number((s / 3600).toPrecision(3))} h`;
 };
 
-// A name as the axes of the pictures have it: words, and the unit in brackets in place of the last ones.
+// A name in words, without the unit at its end; and as the axes of the pictures have it, with the unit in brackets.
 page.axisWords = (name, unit) => {
   const suffix = `_${(unit ?? "").replace("/", "_per_").replace("µ", "u").replace(/[ ·]/g, "")}`;
   const stem = unit && name.endsWith(suffix) && name.length > suffix.length ? name.slice(0, -suffix.length) : name;

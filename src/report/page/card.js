@@ -234,7 +234,6 @@
     const width = page.byId("main").clientWidth;
     Object.assign(page.state, { card: row, known, awaited: null });
     rebuild = children;
-    card.inert = false;
     card.replaceChildren(...children());
     card.hidden = false;
     page.holdCard(false);

@@ -47,7 +47,7 @@
   const build = (known) => {
     const { section, table, valueCell, command, evaluateOf, boundsOf, button } = page.cardParts;
     const { design, set, values } = known;
-    const isOther = String(set) !== String(page.shownSet ?? []);
+    const isOther = !page.isOfShown(known);
     const why = known.isFeasible === undefined ? "not on the front" : known.isFeasible ? "feasible, but not on the front: others are better" : `infeasible${known.status && known.status !== "ok" ? `: ${known.status}` : ""}`;
     const place = set.length && isOther ? `with ${set.join(", ")}` : isOther ? "of the study without changes" : why;
     const isPinned = page.isPinned(known);

@@ -31,6 +31,8 @@
     const { design, set } = typeof of === "number" ? { design: page.designOf(of), set: shownSet() } : of;
     return pins.find((pin) => pin.design === design && isOf(pin, set));
   };
+  // Is it of the study that is shown, with the same changes?
+  page.isOfShown = (of) => isOf(of, shownSet());
   page.letterOf = (row) => pinnedOf(row)?.letter;
   page.isPinned = (of) => Boolean(pinnedOf(of));
 

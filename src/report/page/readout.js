@@ -26,7 +26,7 @@
     const children = [page.legend(page.layoutWidth(readout) || Infinity)];
     if (known) {
       const entry = ([name, { text, unit, words, value }]) => page.element("div", {}, page.element("dt", { title: name }, name), page.element("dd", {}, text, words || !unit || Number.isNaN(value) ? "" : ` ${page.unit(unit)}`));
-      children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${known.design}`), String(known.set) === String(page.shownSet ?? []) ? " (card, not on the front)" : " (card, with other changes)"));
+      children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${known.design}`), page.isOfShown(known) ? " (card, not on the front)" : " (card, with other changes)"));
       children.push(page.element("dl", {}, [...known.values].slice(0, 18).map(entry)));
     } else if (row !== null && row !== undefined) {
       const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : page.chosenWord();

@@ -56,6 +56,7 @@ const WRONG: &[(&str, &str)] = &[
     ),
     ("sweep done", "beltspace report done writes its page again"),
     ("explore done --no-browser", "it is the directory of a result"),
+    ("explore small.toml --no-browser --view p=1<b", "a view cannot have '<' in it; copy the whole command"),
     (
         "eval timing-belt --profile nowhere/teeth.csv",
         "error: nowhere/teeth.csv: there is no directory nowhere; make it, or name another file",

@@ -94,11 +94,11 @@
     return reached ? `${page.count(reached)} of ${page.count(front.rows)} designs on the front reach${reached === 1 ? "es" : ""} every wished value. ` : "No design on the front reaches every wished value. ";
   };
 
-  let known = null; // what was counted of the sets of weights
+  let known = { front: null, stable: null }; // what was counted of the sets of weights, and for which front
   const show = (stable) => {
     const box = page.byId("ranked");
     if (!box) return;
-    known = stable;
+    known = { front: page.front, stable };
     const { front } = page;
     const part = front.of > front.rows ? `Of the ${page.count(front.rows)} designs that are shown. ` : "";
     const { order } = page.ranking();
@@ -158,7 +158,7 @@
       for (const line of page.byId("weigh").querySelectorAll("tr[data-row]")) line.classList.toggle("is-current", Number(line.dataset.row) === row);
     };
     for (const event of ["current", "card"]) page.events.on(`${event}.ranked`, mark);
-    page.events.on("pins.ranked", () => page.byId("weigh").querySelector("tr[data-row]") && show(known));
+    page.events.on("pins.ranked", () => known.front === page.front && page.byId("weigh").querySelector("tr[data-row]") && show(known.stable));
     page.events.on("choice.goals", () => page.schedule("goals", page.showGoals));
     const words = () => (page.isWeighed() ? `first by weights: design ${page.designOf(page.chosenRow())}` : "equal weights");
     let said = words();

@@ -45,7 +45,9 @@
     const ends = page.data.model.drive.endsWith("-cvt") && ratio ? ratio.ends : null;
     let shown = ratio ? ratio.first : null;
     if (ends && ratioShown !== null && ratioShown >= ends[0] && ratioShown <= ends[1]) shown = ratioShown;
-    const first = draw(of, shown);
+    // What is fixed under other changes the engine has to say first: with the values of this study the drawing would be of another drive.
+    const isUntold = typeof of !== "number" && !of.inputs && !page.isOfShown(of);
+    const first = isUntold ? { missing: ["the fixed inputs"] } : draw(of, shown);
     const title = page.element("h3", { id: "drive-title" }, "Drawn to scale");
     const section = (...children) => page.element("section", { class: "drive-section", "data-testid": "drive", "aria-labelledby": "drive-title" }, page.element("div", {}, title), children);
     if (first.none) return section(page.element("p", { class: "hint" }, `Not drawn: ${first.none}.`));

@@ -5,7 +5,7 @@
   const ask = async () => {
     const section = page.byId("around");
     // Of other changes only what is on the card is known.
-    const known = page.state.known && String(page.state.known.set) === String(page.shownSet) ? page.state.known : null;
+    const known = page.state.known && page.isOfShown(page.state.known) ? page.state.known : null;
     const row = page.state.card ?? (page.front ? page.chosenRow() : null);
     if (asking) asking.abort();
     if (page.state.awaited !== null) return null;
