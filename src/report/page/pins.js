@@ -40,7 +40,7 @@
     const pinned = pinnedOf(of);
     return pinned ? page.unpin(pinned) : add(typeof of === "number" ? pinOf(of) : knownPin(of));
   };
-  const knownPin = ({ design, set, values }, letter = free()) => ({ design, letter, values, set });
+  const knownPin = ({ design, set, values }) => ({ design, letter: free(), values, set });
 
   const add = (pin) => {
     if (!page.canPin()) return;

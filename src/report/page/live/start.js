@@ -27,8 +27,8 @@
     return (await page.copyText(command)) ? "command copied" : "select the command to copy it";
   });
 
-  // A command that opens this very view again. What is changed on the page is part of the view, as pins tell of what they are by it; what the
-  // program was started with is not.
+  // A command that opens this very view again. Changes made on the page are part of the view: pins name theirs in the same way. What the
+  // program was started with stays as --set.
   const copyView = withStudy("not copied", async () => {
     const { evaluate } = await page.askOnce("/study", { set: [] });
     const explore = evaluate.replace(" eval ", " explore ").replace(" --design {design}", "");
