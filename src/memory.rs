@@ -39,11 +39,11 @@ const ROW_INPUT: u64 = 50;
 const ROW_LABEL: u64 = 100;
 /// Bytes of the page, of a number in a cell of a map that it shows (a cell has three or four, read as text), of a design on it, of each
 /// output of such a design, and of a row of the list of all designs.
-const PAGE: u64 = 700_000;
-const PAGE_NUMBER: u64 = 63;
-const PAGE_ROW: u64 = 1_050;
+const PAGE: u64 = 1_500_000;
+const PAGE_NUMBER: u64 = 70;
+const PAGE_ROW: u64 = 1_000;
 const PAGE_OUTPUT: u64 = 50;
-const PAGE_VARIANT: u64 = 1_400;
+const PAGE_VARIANT: u64 = 1_500;
 /// Bytes of a column or an axis of a design that is a dot on the page: packed, and as text.
 const DOT: u64 = 24;
 /// Bytes of a combination of inputs whose sensitivity is looked at.
