@@ -4,7 +4,7 @@
 
 use crate::certify::{self, margin_columns};
 use crate::error::Result;
-use crate::live::around::GivenRange;
+use crate::live::given::{ends_of_fixed, fixed_inputs, slider_ends};
 use crate::models::{Input, Model};
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -216,34 +216,16 @@ fn described_input(input: &Input) -> Value {
     })
 }
 
-/// Between which ends a slider runs: what the source covers and what the study says, within what the formula accepts.
+/// Between which ends a slider runs.
 fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
-    let width = if input.word_for(least).is_some() || input.word_for(largest).is_some() { 0.0 } else { largest - least };
-    let (usual_low, usual_high) = if (input.usual.1 - input.usual.0).is_finite() {
-        input.usual
-    } else {
-        // A variable of the study without a range of its own: as far again, and not through zero.
-        let reach = if width > 0.0 { width } else { largest.abs() };
-        let low = least - reach;
-        (if least >= 0.0 { low.max(0.0) } else { low }, largest + reach)
-    };
-    let (mut low, mut high) = (usual_low.min(least), usual_high.max(largest));
-    if width > 0.0 {
-        (low, high) = (low.max(least - 2.0 * width), high.min(largest + 2.0 * width).max(largest));
-    }
-    let inside = |value: f64, towards: f64| if input.valid.contains(value) { value } else { towards };
-    (control["low"], control["high"]) =
-        (finite(inside(low, least.min(usual_low).max(low + 1e-3 * (high - low)))), finite(inside(high, largest)));
+    let (low, high) = slider_ends(input, least, largest);
+    (control["low"], control["high"]) = (finite(low), finite(high));
 }
 
 /// Every input that has one value; those that the file gives come first.
 fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
     let model = &study.model;
-    let axes = || study.design.iter().chain(study.operating()).chain(&study.uncertainty);
-    let drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
-    let single =
-        (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
-    let mut controls: Vec<Value> = single
+    let mut controls: Vec<Value> = fixed_inputs(study)
         .map(|number_of| {
             let input = &model.inputs[number_of];
             let value = study.fixed[number_of];
@@ -253,46 +235,13 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
             control["value"] = value_of(model, number_of, value);
             control["shown"] = written(input, value).into();
             control["given"] = given.contains(&input.name).into();
-            let centre = if input.word_for(value).is_some() { input.usual.0 } else { value };
-            span(&mut control, input, centre, centre);
+            let (low, high) = ends_of_fixed(study, number_of);
+            (control["low"], control["high"]) = (finite(low), finite(high));
             control
         })
         .collect();
     controls.sort_by_key(|control| control["given"] != true);
     controls
-}
-
-/// What a study gives every design, as far as its sliders go: loads, and the numbers that the file fixes.
-pub fn given_ranges(study: &Study, text: &str) -> Vec<GivenRange> {
-    let load = |axis: usize, (column, &input): (usize, &usize)| {
-        let described = &study.model.inputs[input];
-        let (least, largest) = study.operating()[axis].ends(column);
-        let mut control = described_input(described);
-        span(&mut control, described, least, largest);
-        // The largest of several loads is not below the others; a single one may be any.
-        let from = if least < largest { least } else { control["low"].as_f64()? };
-        let to = control["high"].as_f64()?;
-        let has_words = [least, largest].into_iter().any(|it| described.word_for(it).is_some());
-        let is_range = !described.integer && !described.is_enumeration() && !has_words && to > largest;
-        is_range.then_some(GivenRange::Load { axis, input, from, to })
-    };
-    let of_axis = |(axis, it): (usize, &Axis)| it.inputs().iter().enumerate().filter_map(|it| load(axis, it)).collect::<Vec<_>>();
-    let loads = study.operating().iter().enumerate().flat_map(of_axis);
-    loads.chain(fixed_ranges(study, text).into_iter().map(GivenRange::Fixed)).collect()
-}
-
-fn fixed_ranges(study: &Study, text: &str) -> Vec<Axis> {
-    let given = entry_names(text, "fixed");
-    let controls = fixed(study, &given);
-    let range = |control: &Value| {
-        let input = study.model.input(control["name"].as_str()?)?;
-        let ends = (control["low"].as_f64()?, control["high"].as_f64()?);
-        let is_number = control["value"].is_number() && !study.model.inputs[input].integer;
-        let value = study.fixed[input];
-        let is_range = is_number && ends.0 < ends.1 && (ends.0..=ends.1).contains(&value);
-        is_range.then_some(Axis::Single { input, levels: Levels::Continuous { from: ends.0, to: ends.1, log: false } })
-    };
-    controls.iter().filter(|it| it["given"] == true).filter_map(range).collect()
 }
 
 #[cfg(test)]
@@ -332,11 +281,6 @@ mod tests {
         assert_eq!(ends(&told["operation"][0]), (0.0, 230.0));
         let share = told["fixed"].as_array().and_then(|all| all.iter().find(|it| it["name"] == "share")).expect("it is fixed");
         assert_eq!(ends(share), (0.0, 2.2));
-        // So do the slices over them; of a single load they look at less of it, too.
-        let single = study_of_text(&text.replace("[70, 150]", "[150]"));
-        assert!(matches!(given_ranges(&single, text)[0], GivenRange::Load { from: 0.0, to: 300.0, .. }));
-        let given = given_ranges(&study, text);
-        assert!(matches!(given[..], [GivenRange::Load { axis: 0, from: 70.0, to: 230.0, .. }, GivenRange::Fixed(_), ..]), "{given:?}");
     }
 
     #[test]

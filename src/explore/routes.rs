@@ -1,12 +1,13 @@
 //! The fixed addresses of the server.
 
 use super::Explorer;
-use super::controls::{controls, given_ranges};
+use super::controls::controls;
 use super::http::{Connection, HttpRequest, Reply, begin_chunks, write_chunk};
 use crate::certify;
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
 use crate::live::around::{PLACES, around_with};
+use crate::live::given::given_ranges;
 use crate::models::Models;
 use crate::plan::Plan;
 use crate::report::{givens, inputs, live as told, sections, slices};
@@ -243,21 +244,16 @@ impl Explorer {
     /// What is around a design.
     fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (plan, design, text) = self.asked_design(question)?;
-        let given = given_ranges(&plan.study, &text);
-        // Seconds of a thread.
+        // Seconds of a thread, as far as they may be taken.
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        let takes = |places: u64| {
+        let fits = |slices: usize| {
             let effort = plan.effort();
-            (effort.prepare + effort.finish) * (places * given.len() as u64) as f64
+            MOST_SECONDS > (effort.prepare + effort.finish) * (PLACES * slices as u64) as f64
         };
-        let is_left_out = takes(PLACES) >= MOST_SECONDS && !given.is_empty();
-        let given = if is_left_out { &[] } else { &given[..] };
-        let (columns, slices) = around_with(&plan, design, PLACES, given, self.live.threads(), control)?;
-        let mut told = slices::told(&plan, &columns, &slices);
+        let given = given_ranges(&plan.study, &text).as_far_as(fits);
+        let (columns, slices) = around_with(&plan, design, PLACES, &given.ranges, self.live.threads(), control)?;
+        let mut told = slices::told(&plan, &columns, &slices, &given);
         told["kind"] = "around".into();
-        // Those over what the study gives come last.
-        told["given"] = given.len().into();
-        told["given_left_out"] = is_left_out.into();
         tell((told, Vec::new()))
     }
 }

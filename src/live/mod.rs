@@ -7,6 +7,8 @@
 pub mod around;
 mod coarse;
 mod followed;
+#[cfg(feature = "pictures")]
+pub mod given;
 pub mod lanes;
 pub mod search;
 pub mod table;

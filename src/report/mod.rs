@@ -118,7 +118,8 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let constraints = constraints_json(study, constraints);
     let influence = influence::read(folder, plan, &summary)?;
     let knee = summary["knee"]["design_index"].as_u64().filter(|&it| it < plan.designs());
-    let around = knee.map(|knee| slices::of_knee(plan, knee, threads, control)).transpose()?;
+    let text = text_of(folder, "study.toml")?;
+    let around = knee.map(|knee| slices::of_knee(plan, &text, knee, threads, control)).transpose()?;
     let figures = [figures(folder)?, influence.figures].concat();
     let mut data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
@@ -126,7 +127,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "title": study.title,
         "model": model_json(study),
         "study": {
-            "file": "study.toml", "text": text_of(folder, "study.toml")?, "hash": summary["study_hash"],
+            "file": "study.toml", "text": text, "hash": summary["study_hash"],
             "designs": plan.designs(), "scenarios": plan.scenarios(), "feasible": feasible,
         },
         "run": json_of(folder, RUN).ok().filter(summary::is_run),

@@ -5,7 +5,8 @@
 
 use crate::certify::{self, Column, Role};
 use crate::error::Result;
-use crate::live::around::{PLACES, Slice, around, most_designs, sliced};
+use crate::live::around::{PLACES, Slice, around_with, most_designs, sliced};
+use crate::live::given::{Given, GivenSlices, given_ranges};
 use crate::models::Effort;
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -19,8 +20,8 @@ const MOST_NUMBERS: u64 = 20_000;
 /// Places along an input, of which the page of a result takes the most that are within these bounds.
 const GRAINS: [u64; 4] = [PLACES, 17, 9, 5];
 
-/// Slices as the page draws them.
-pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
+/// Slices as the page draws them. Those over what the study gives come last, and of these what it leaves at defaults.
+pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice], given: &GivenSlices) -> Value {
     let study = &plan.study;
     let named = columns.iter().map(|it| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
     let slices = slices.iter().map(|slice| {
@@ -38,14 +39,17 @@ pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
             "status": slice.rows.iter().map(status).collect::<Vec<_>>(), "lines": lines.collect::<Vec<_>>(),
         })
     });
-    json!({ "columns": named.collect::<Vec<_>>(), "slices": slices.collect::<Vec<_>>() })
+    json!({
+        "columns": named.collect::<Vec<_>>(), "slices": slices.collect::<Vec<_>>(),
+        "given": given.ranges.len(), "defaults": given.defaults, "given_left_out": given.is_left_out,
+    })
 }
 
-/// The slices around the knee of a result, or why there are none; `null` if no input has a slice.
+/// The slices around the knee of a result, or why there are none; `null` if no axis has a slice. `text` is the study's.
 ///
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
-pub fn of_knee(plan: &Plan, knee: u64, threads: usize, control: &Control) -> Result<Value> {
+pub fn of_knee(plan: &Plan, text: &str, knee: u64, threads: usize, control: &Control) -> Result<Value> {
     let axes = sliced(plan).count() as u64;
     if axes == 0 {
         return Ok(Value::Null);
@@ -53,15 +57,19 @@ pub fn of_knee(plan: &Plan, knee: u64, threads: usize, control: &Control) -> Res
     let columns = certify::columns(&plan.study);
     let judged = columns.iter().filter(|it| it.role != Role::Report).count() as u64;
     let Effort { prepare, finish } = plan.effort();
-    let designs = |places: u64| axes * most_designs(places);
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-    let fits = |&places: &u64| (prepare + finish) * designs(places) as f64 <= MOST_SECONDS && designs(places) * judged <= MOST_NUMBERS;
+    let fits = |slices: u64, places: u64| {
+        let designs = slices * most_designs(places);
+        (prepare + finish) * designs as f64 <= MOST_SECONDS && designs * judged <= MOST_NUMBERS
+    };
     let is_proven = columns.iter().any(|it| plan.study.is_proven(it.quantity));
-    let Some(places) = GRAINS.into_iter().find(fits).filter(|_| !is_proven) else {
+    let Some(places) = GRAINS.into_iter().find(|&places| fits(axes, places)).filter(|_| !is_proven) else {
         return Ok(json!({ "design": knee.to_string(), "left_out": true }));
     };
-    let (columns, slices) = around(plan, knee, places, threads, control)?;
-    let mut told = told(plan, &columns, &slices);
+    // Without defaults: formulas that they make longer would take more memory than `check` says.
+    let given = Given { defaults: Vec::new(), ..given_ranges(&plan.study, text) }.as_far_as(|slices| fits(axes + slices as u64, places));
+    let (columns, slices) = around_with(plan, knee, places, &given.ranges, threads, control)?;
+    let mut told = told(plan, &columns, &slices, &given);
     told["design"] = knee.to_string().into();
     Ok(told)
 }

@@ -146,7 +146,7 @@ fn while_nothing_comes_the_line_says_that_what_is_shown_is_older() {
     answered(&mut browser);
     browser.wait("document.querySelector('#live-text').textContent.startsWith('exact')");
     assert_eq!(browser.evaluate(is_older), false);
-    browser.wait("[...document.querySelectorAll('.slice-row h3')].filter((it) => it.textContent.endsWith(', the largest')).length === 2");
+    browser.wait("[...document.querySelectorAll('.slice-row h3')].filter((it) => it.textContent.endsWith(', the largest')).length === 3");
     // What is around a design follows the weights, as all else does, until a card is open.
     browser.evaluate("(() => { const e = document.querySelector('[data-weight=axial_force_N]'); e.value = 100; e.dispatchEvent(new Event('input', { bubbles: true })); })()");
     browser.wait("beltspace.page.chosenRow() !== beltspace.page.front.knee");
@@ -294,13 +294,25 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     let order: Vec<String> = serde_json::from_value(order).expect("texts");
     let place = |name: &str| order.iter().position(|it| it == name).unwrap_or_else(|| panic!("{name} in {order:?}"));
     assert!(
-        place("band_count") < place("With other loads and fixed values")
-            && place("With other loads and fixed values") < place("strength_MPa")
+        place("band_count") < place("With other loads, uncertainties and fixed values")
+            && place("With other loads, uncertainties and fixed values") < place("strength_MPa")
     );
     // Loads that every draw must survive too.
-    assert!(place("With other loads and fixed values") < place("torque_Nm, the largest"), "{order:?}");
+    assert!(place("With other loads, uncertainties and fixed values") < place("torque_Nm, the largest"), "{order:?}");
     let said = browser.text("document.querySelector('.slices').textContent");
-    assert!(said.contains("the least load") && !said.contains("end of its slider"), "{said}");
+    assert!(said.contains("its next value") && !said.contains("end of its slider"), "{said}");
+    // What the study leaves at its default is folded up, drawn once it is opened, and only then saved.
+    let fold = |browser: &mut Browser, is_open: bool| {
+        browser.evaluate(&format!("document.querySelector('#around details.slice-group').open = {is_open}"));
+    };
+    let saved = "beltspace.page.pictureOf([document.querySelector('#around .slices')]).text.includes('over centre_distance_mm: ')";
+    assert_eq!(browser.number("document.querySelectorAll('#around details.slice-group h3').length"), 0.0);
+    fold(&mut browser, true);
+    browser.wait("document.querySelector('#around details.slice-group h3')");
+    assert!(browser.text("document.querySelector('#around details.slice-group').textContent").contains("as far as this looks"));
+    assert_eq!(browser.evaluate(saved), true);
+    fold(&mut browser, false);
+    assert_eq!(browser.evaluate(saved), false);
     // The last feasible value and the next one are not the same number.
     browser.evaluate(
         "(() => { const box = document.createElement('div'); box.id = 'apart'; document.body.append(box); \
@@ -315,7 +327,7 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
         browser.evaluate("[...document.querySelectorAll('#apart .switch title')].map((it) => it.textContent)"),
         serde_json::json!(["from here on the worst scenario is #7"])
     );
-    assert!(said.contains("Other loads and fixed values are left out"), "{said}");
+    assert!(said.contains("Other loads, uncertainties and fixed values are left out"), "{said}");
     assert_eq!(browser.number("document.querySelectorAll('#around [data-testid=given-left-out]').length"), 0.0);
     // However long the value, the name beside it is whole.
     assert_eq!(browser.evaluate("[...document.querySelectorAll('#readout dt')].every((it) => it.scrollWidth <= it.clientWidth)"), true);

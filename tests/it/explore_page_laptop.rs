@@ -67,6 +67,32 @@ fn both_views_are_seen_together_on_a_laptop_and_titles_are_clear_on_every_screen
         assert!(axes.len() >= 8 && 10 * seen >= 9 * axes.len(), "{seen} of {} axes at {width}", axes.len());
         titles_are_clear(&mut browser);
     }
+    // With a card too: it stands below both where there is no room beside them.
+    browser.evaluate("beltspace.openCard(beltspace.page.front.knee)");
+    for (width, height) in [(1280, 720), (1440, 900), (1700, 900)] {
+        resized(&mut browser, width, height);
+        browser.picture(&format!("explore-card-{width}"));
+        let [controls] = boxes(&mut browser, "#controls")[..] else { panic!("one panel") };
+        let [card] = boxes(&mut browser, "#card")[..] else { panic!("one card") };
+        let [matrix] = boxes(&mut browser, "#splom .stage")[..] else { panic!("one matrix") };
+        let [lines] = boxes(&mut browser, "#parallel")[..] else { panic!("one plot") };
+        assert!(
+            controls[2] <= card[0] + 1.0 && controls[2] <= matrix[0] && matrix[2] < lines[0],
+            "{controls:?} {card:?} {matrix:?} {lines:?}"
+        );
+        // What is in sight of both.
+        let seen = [&matrix, &lines].map(|view| view[3].min(card[1].max(f64::from(height) * f64::from(width > 1660))) - view[1]);
+        assert!(seen.iter().all(|high| *high > 180.0) && (width < 1660 || lines[2] <= card[0]), "{seen:?} at {width}, {lines:?} {card:?}");
+        let scrolls =
+            "[document.querySelector('#card')].map((it) => [it.scrollWidth <= it.clientWidth, it.scrollHeight >= it.clientHeight])[0]";
+        assert_eq!(browser.evaluate(scrolls), serde_json::json!([true, true]));
+        // Its buttons stay while the rest is scrolled.
+        browser.evaluate("document.querySelector('#card').scrollTo({ top: 400, behavior: 'instant' })");
+        let [head] = boxes(&mut browser, "#card-close")[..] else { panic!("one button") };
+        assert!(width > 1660 || overlap(&head, &card), "{head:?} {card:?}");
+        browser.evaluate("document.querySelector('#card').scrollTo({ top: 0, behavior: 'instant' })");
+    }
+    browser.evaluate("beltspace.page.closeCard()");
     // On a phone the matrix is as wide as the page.
     resized(&mut browser, 400, 800);
     browser.picture("explore-400");

@@ -212,7 +212,21 @@ fn the_knee_has_slices_and_words_that_hold() {
     let front = &swept.front()[knee];
     assert_eq!(around["design"], front["design_index"].as_str());
     let slices = around["slices"].as_array().expect("slices");
-    assert_eq!(slices.len(), 4, "one for each design axis");
+    let count = |name: &str| around[name].as_u64().expect("a number") as usize;
+    let names: Vec<_> = slices.iter().map(|it| it["input"].as_str().expect("a name")).collect();
+    assert_eq!(names[..4], ["groove_angle_deg", "band_thickness_mm", "band_count", "reserve"]);
+    // Then what the study says of loads, of friction and of the strength.
+    let said = [
+        "ratio, the least",
+        "ratio, the largest",
+        "torque_Nm, the least",
+        "torque_Nm, the largest",
+        "friction, the least",
+        "friction, the largest",
+        "strength_MPa",
+    ];
+    assert_eq!(names[4..], said);
+    assert!(count("defaults") == 0 && count("given") == said.len(), "{names:?}");
     for slice in slices {
         let own =
             slice["at"].as_array().and_then(|places| places.iter().position(|it| *it == slice["own"])).expect("its own value is a place");

@@ -35,6 +35,17 @@ fn every_chart_can_be_saved_with_its_words() {
         // It stands alone: nothing in it needs the page's style.
         assert!(!picture.contains("class=\"save-buttons") && !picture.contains("var(--"), "{selector}");
     }
+    // On a laptop both views stand beside each other, and beside the card.
+    for width in [1280, 1440] {
+        browser.resize(width, 800);
+        std::thread::sleep(std::time::Duration::from_millis(600));
+        let sides = "['#splom .stage', '#parallel', '#card'].map((it) => document.querySelector(it).getBoundingClientRect()).flatMap((it) => [it.left, it.right])";
+        let sides: Vec<f64> = serde_json::from_value(browser.evaluate(sides)).expect("numbers");
+        assert!(sides.is_sorted() && sides[5] <= f64::from(width), "{sides:?}");
+        let is_cut = "document.querySelector('#card').scrollWidth > document.querySelector('#card').clientWidth";
+        assert_eq!(browser.evaluate(is_cut), false, "at {width}");
+        browser.picture(&format!("report-card-{width}"));
+    }
     // Words with a halo are painted over it, also without the page.
     assert!(saved(&mut browser, ".drive-stage").contains("paint-order=\"stroke"));
     assert!(saved(&mut browser, "#splom").contains("linearGradient"), "the colour bar");
@@ -161,7 +172,7 @@ fn a_saved_picture_has_of_a_list_what_the_page_shows_of_it_and_the_names_of_othe
     browser.evaluate("window.saved = null; document.querySelector('[data-testid=\"png front\"]').click()");
     browser.wait("window.saved instanceof Blob");
     let png = browser.evaluate(
-        "(async () => { const picture = await createImageBitmap(window.saved); const { width, height } = beltspace.page.pictureOf([...document.querySelectorAll('#others, #splom')]); \
+        "(async () => { const picture = await createImageBitmap(window.saved); const { width, height } = beltspace.page.pictureOf([...document.querySelectorAll('#sample, #others, #splom')]); \
          const canvas = new OffscreenCanvas(picture.width, picture.height); const context = canvas.getContext('2d'); context.drawImage(picture, 0, 0); \
          const colours = new Set(new Uint32Array(context.getImageData(0, 0, picture.width, picture.height).data.buffer)); \
          return { type: window.saved.type, wide: picture.width / width, high: picture.height / height, colours: colours.size }; })()",

@@ -223,6 +223,8 @@
   };
 
   let rebuild = null; // what makes the card that is open
+  // The head stays in sight where the rest is scrolled.
+  const fill = (card, [head, ...parts]) => card.replaceChildren(head, page.element("div", { class: "card-body" }, parts));
   const pressed = { is: false, later: false }; // is a button held down on the card, and is it to be built anew then?
 
   // `known`: the design of the card if it has no row.
@@ -234,7 +236,7 @@
     const width = page.byId("main").clientWidth;
     Object.assign(page.state, { card: row, known, awaited: null });
     rebuild = children;
-    card.replaceChildren(...children());
+    fill(card, children());
     card.hidden = false;
     page.holdCard(false);
     document.body.classList.add("with-card");
@@ -286,8 +288,8 @@
       if (card.hidden || (page.state.card === null && !page.state.known)) return;
       // A press on something that is exchanged before it is let go would be lost.
       if (pressed.is) pressed.later = true;
-      else if (page.state.card !== null) page.keepFocus(card, () => card.replaceChildren(...build(page.state.card)));
-      else page.keepFocus(card, () => card.replaceChildren(...rebuild()));
+      else if (page.state.card !== null) page.keepFocus(card, () => fill(card, build(page.state.card)));
+      else page.keepFocus(card, () => fill(card, rebuild()));
     };
     card.addEventListener("pointerdown", (event) => (pressed.is = event.button === 0));
     const release = () => {

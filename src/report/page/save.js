@@ -93,7 +93,9 @@
           parts.push(`<rect x="${near(x)}" y="${near(y + band * part)}" width="${near(wide)}" height="${near(part)}" fill="url(#${id})"/>`);
         });
       } else if (wide && d3.color(style.backgroundColor)?.opacity > 0) parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="${style.backgroundColor}"/>`);
-      for (const child of element.childNodes) {
+      // What is folded up is not seen.
+      const shown = element.localName === "details" && !element.open ? element.querySelectorAll(":scope > summary") : element.childNodes;
+      for (const child of shown) {
         if (child.nodeType === Node.TEXT_NODE) text(child, clip);
         else if (child.nodeType === Node.ELEMENT_NODE) visit(child, clip);
       }

@@ -65,6 +65,13 @@ impl Study {
         Ok(draws.columns(0..draws.count()))
     }
 
+    /// The same with other draws, a column for each input that is drawn. It has no fresh draws, so that nothing can be confirmed.
+    pub(crate) fn with_drawn(&self, drawn: Vec<Vec<f64>>) -> Self {
+        let Some(probability) = &self.probability else { return self.clone() };
+        let model = model(probability, DrawnKernel::new(probability.drive_of(drawn, None)));
+        Self { model: Arc::new(model), ..self.clone() }
+    }
+
     /// The same with other operating cases on as many axes; `drawn` are its [`Study::drawn_columns`]. It has no fresh draws, so that nothing
     /// can be confirmed.
     ///

@@ -274,7 +274,7 @@ pub(super) fn written(value: &str) -> Result<String, String> {
 }
 
 /// The names of the entries of a table, in file order.
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 pub(crate) fn entry_names(text: &str, table: &str) -> Vec<String> {
     let Ok(tree) = DeTable::parse(text) else { return Vec::new() };
     let top = TomlTable::new(tree.get_ref(), 0);

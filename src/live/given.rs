@@ -1,0 +1,205 @@
+//! What a study gives every design, and how far each of it is varied: the ends of its sliders.
+
+use crate::live::around::{GivenRange, PLACES, ScenarioEnd};
+use crate::models::Input;
+use crate::probability::Effect;
+use crate::study::{Axis, Levels, Study, UncertainInput, entry_names};
+
+/// Standard deviations by which a mean is moved at most.
+const MOST_SDS: f64 = 6.0;
+/// Whole numbers that are looked at on either side of the own one.
+const NEIGHBOURS: f64 = (PLACES / 2) as f64;
+
+/// What a study gives every design, as far as its sliders go.
+#[derive(Debug)]
+pub struct Given {
+    /// The ends of what it says of loads and of uncertain inputs, and the numbers that the file fixes.
+    pub said: Vec<GivenRange>,
+    /// Inputs that the file leaves at their defaults.
+    pub defaults: Vec<GivenRange>,
+}
+
+/// As much of it as there is time for.
+#[derive(Debug)]
+pub struct GivenSlices {
+    /// What is varied: the defaults last.
+    pub ranges: Vec<GivenRange>,
+    /// How many of these are defaults.
+    pub defaults: usize,
+    /// Is what the study says left out?
+    pub is_left_out: bool,
+}
+
+impl Given {
+    /// What the study says if so many slices fit, and its defaults if they do too.
+    pub fn as_far_as(self, fits: impl Fn(usize) -> bool) -> GivenSlices {
+        let Self { said, defaults } = self;
+        let is_left_out = !said.is_empty() && !fits(said.len());
+        if is_left_out {
+            return GivenSlices { ranges: Vec::new(), defaults: 0, is_left_out };
+        }
+        let defaults = if fits(said.len() + defaults.len()) { defaults } else { Vec::new() };
+        let of_defaults = defaults.len();
+        GivenSlices { ranges: said.into_iter().chain(defaults).collect(), defaults: of_defaults, is_left_out }
+    }
+}
+
+/// What a study gives every design.
+pub fn given_ranges(study: &Study, text: &str) -> Given {
+    let of_kind = |is_uncertain: bool, axes: &[Axis]| -> Vec<GivenRange> {
+        let inputs = |axis: &Axis| (0..axis.inputs().len()).collect::<Vec<_>>();
+        let each = axes.iter().enumerate().flat_map(|(number, axis)| inputs(axis).into_iter().map(move |column| (number, axis, column)));
+        each.flat_map(|(number, axis, column)| scenario_ends(study, is_uncertain, (number, axis), column)).map(GivenRange::End).collect()
+    };
+    let loads = of_kind(false, study.operating()).into_iter().chain(of_kind(true, &study.uncertainty));
+    let means = means(study);
+    let said = entry_names(text, "fixed");
+    let fixed = |is_said: bool| {
+        let asked = fixed_inputs(study).filter(|&input| said.contains(&study.model.inputs[input].name) == is_said);
+        asked.filter_map(|input| fixed_range(study, input)).map(GivenRange::Fixed).collect::<Vec<_>>()
+    };
+    Given { said: loads.chain(means).chain(fixed(true)).collect(), defaults: fixed(false) }
+}
+
+/// The least and the largest value of an input in the scenarios, as far as there is something to look at.
+fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axis), column: usize) -> Vec<ScenarioEnd> {
+    let input = axis.inputs()[column];
+    let described = &study.model.inputs[input];
+    let (least, largest) = axis.ends(column);
+    let has_words = [least, largest].into_iter().any(|it| described.word_for(it).is_some());
+    if described.integer || described.is_enumeration() || has_words {
+        return Vec::new();
+    }
+    let (low, high) = slider_ends(described, least, largest);
+    // An end goes as far as the value next to it: beyond, that one would be the end. Between the ends of a range all follow.
+    let (mut after_least, mut before_largest) = (largest, least);
+    for value in listed(axis, column) {
+        if value > least {
+            after_least = after_least.min(value);
+        }
+        if value < largest {
+            before_largest = before_largest.max(value);
+        }
+    }
+    let end = |is_largest: bool, from: f64, to: f64| ScenarioEnd { is_uncertain, axis: number, input, is_largest, from, to };
+    // A single value may be any.
+    let ends =
+        if least == largest { vec![end(true, low, high)] } else { vec![end(false, low, after_least), end(true, before_largest, high)] };
+    ends.into_iter().filter(|it| it.from < it.to && (it.to - it.from).is_finite()).collect()
+}
+
+/// The means of the distributions. What is proven of a yield is proven of the draws as the study has them.
+fn means(study: &Study) -> Vec<GivenRange> {
+    let Some(probability) = study.probability.as_ref().filter(|it| !it.enclosure) else { return Vec::new() };
+    let range = |(drawn, it): (usize, &UncertainInput)| {
+        let (mean, sd) = (it.distribution.mean(), it.distribution.sd());
+        let (low, high) = (mean - MOST_SDS * sd, mean + MOST_SDS * sd);
+        let described = &study.model.inputs[it.input];
+        let within = |value: f64| if it.effect == Effect::Is && !described.valid.contains(value) { mean } else { value };
+        let (from, to) = (within(low), within(high));
+        (from < to && (to - from).is_finite()).then_some(GivenRange::Mean { drawn, from, to })
+    };
+    probability.inputs.iter().enumerate().filter_map(range).collect()
+}
+
+/// The values of an input, unless they are a range.
+fn listed(axis: &Axis, column: usize) -> Vec<f64> {
+    match axis {
+        Axis::Joint { rows, .. } => rows.iter().map(|row| row[column]).collect(),
+        Axis::Single { levels: Levels::List(values), .. } => values.clone(),
+        Axis::Single { .. } => Vec::new(),
+    }
+}
+
+/// The range of the slider of a fixed number.
+fn fixed_range(study: &Study, input: usize) -> Option<Axis> {
+    let (described, value) = (&study.model.inputs[input], study.fixed[input]);
+    let (low, high) = ends_of_fixed(study, input);
+    if described.is_enumeration() || described.word_for(value).is_some() || !(high - low).is_finite() || !(low..=high).contains(&value) {
+        return None;
+    }
+    let levels = if described.integer {
+        // Its neighbours: a formula that adds up over very many teeth takes time and memory.
+        let (from, to) = (low.ceil().max(value - NEIGHBOURS), high.floor().min(value + NEIGHBOURS));
+        Levels::Step { from, step: 1.0, count: (to - from).max(0.0) as u64 + 1, log: false }
+    } else {
+        Levels::Continuous { from: low, to: high, log: false }
+    };
+    (low < high && levels.count() > 1).then_some(Axis::Single { input, levels })
+}
+
+/// The inputs that have one value.
+pub fn fixed_inputs(study: &Study) -> impl Iterator<Item = usize> {
+    let is_drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
+    let varies = |input: usize| {
+        let mut axes = study.design.iter().chain(study.operating()).chain(&study.uncertainty);
+        axes.any(|axis| axis.inputs().contains(&input))
+    };
+    let inputs = &study.model.inputs;
+    (0..inputs.len()).filter(move |&input| !varies(input) && !is_drawn(&inputs[input].name))
+}
+
+/// Between which ends the slider of such an input runs.
+pub fn ends_of_fixed(study: &Study, input: usize) -> (f64, f64) {
+    let (described, value) = (&study.model.inputs[input], study.fixed[input]);
+    let centre = if described.word_for(value).is_some() { described.usual.0 } else { value };
+    slider_ends(described, centre, centre)
+}
+
+/// Between which ends a slider runs: what the source covers and what the study says, within what the formula accepts.
+pub fn slider_ends(input: &Input, least: f64, largest: f64) -> (f64, f64) {
+    let width = if input.word_for(least).is_some() || input.word_for(largest).is_some() { 0.0 } else { largest - least };
+    let (usual_low, usual_high) = if (input.usual.1 - input.usual.0).is_finite() {
+        input.usual
+    } else {
+        // A variable of the study without a range of its own: as far again, and not through zero.
+        let reach = if width > 0.0 { width } else { largest.abs() };
+        let low = least - reach;
+        (if least >= 0.0 { low.max(0.0) } else { low }, largest + reach)
+    };
+    let (mut low, mut high) = (usual_low.min(least), usual_high.max(largest));
+    if width > 0.0 {
+        (low, high) = (low.max(least - 2.0 * width), high.min(largest + 2.0 * width).max(largest));
+    }
+    let inside = |value: f64, towards: f64| if input.valid.contains(value) { value } else { towards };
+    (inside(low, least.min(usual_low).max(low + 1e-3 * (high - low))), inside(high, largest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_goes_as_far_as_the_slider_and_the_next_value() {
+        let text = "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[operation]\nasked_Nm = [70, 150]\n[fixed]\nshare = 1.1\ntraction = 0.4\n\
+                    [formulas]\ntorque_Nm = \"asked_Nm * share\"\n[objectives]\naxial_force_N = \"min\"\n";
+        let study_of_text = |text: &str| Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let study = study_of_text(text);
+        let single = study_of_text(&text.replace("[70, 150]", "[150]"));
+        let ends = |given: &[GivenRange]| -> Vec<(bool, f64, f64)> {
+            given.iter().filter_map(|it| if let GivenRange::End(it) = it { Some((it.is_largest, it.from, it.to)) } else { None }).collect()
+        };
+        assert_eq!(ends(&given_ranges(&single, text).said), [(true, 0.0, 300.0)]);
+        let given = given_ranges(&study, text);
+        assert_eq!(ends(&given.said), [(false, 0.0, 150.0), (true, 70.0, 230.0)]);
+        // The file fixes two numbers, of which one is an input of the formula alone.
+        assert_eq!(given.said.len(), 4, "{given:?}");
+        // With three cases the largest is at least the second.
+        let three = study_of_text(&text.replace("[70, 150]", "[70, 120, 150]"));
+        assert_eq!(ends(&given_ranges(&three, text).said), [(false, 0.0, 120.0), (true, 120.0, 230.0)]);
+    }
+
+    #[test]
+    fn whole_numbers_and_what_the_file_leaves_out_have_slices_too() {
+        let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = [0.15, 0.2]\n[fixed]\nband_count = 9\n[objectives]\naxial_force_N = \"min\"\n";
+        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let given = given_ranges(&study, text);
+        let band_count = study.model.input("band_count").expect("it is an input");
+        let [GivenRange::Fixed(Axis::Single { input, levels: Levels::Step { from, step, count, .. } })] = &given.said[..] else {
+            panic!("{given:?}")
+        };
+        assert!(*input == band_count && from.fract() == 0.0 && *step == 1.0 && *count > 9, "{given:?}");
+        let named = |name: &str| given.defaults.iter().any(|it| matches!(it, GivenRange::Fixed(it) if it.name(&study.model) == name));
+        assert!(named("friction") && named("elastic_modulus_MPa") && !named("band_count") && !named("band_thickness_mm"), "{given:?}");
+    }
+}
