@@ -7,6 +7,8 @@ use crate::study::{Axis, Levels, Study, UncertainInput, entry_names};
 
 /// Standard deviations by which a mean is moved at most.
 const MOST_SDS: f64 = 6.0;
+/// Part of its least value to which a range with factors between its levels goes.
+const FURTHEST_FACTOR: f64 = 10.0;
 /// Whole numbers that are looked at on either side of the own one.
 const NEIGHBOURS: f64 = (PLACES / 2) as f64;
 
@@ -71,6 +73,8 @@ fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axi
         return Vec::new();
     }
     let (low, high) = slider_ends(described, least, largest);
+    // No factor leads to zero.
+    let low = if axis.is_logarithmic() { low.max(least / FURTHEST_FACTOR) } else { low };
     // An end goes as far as the value next to it: beyond, that one would be the end. Between the ends of a range all follow.
     let (mut after_least, mut before_largest) = (largest, least);
     for value in listed(axis, column) {
@@ -88,15 +92,18 @@ fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axi
     ends.into_iter().filter(|it| it.from < it.to && (it.to - it.from).is_finite()).collect()
 }
 
-/// The means of the distributions. What is proven of a yield is proven of the draws as the study has them.
+/// The means of the distributions. What is proven of a yield is proven of the distributions, not of the draws that are moved here.
 fn means(study: &Study) -> Vec<GivenRange> {
     let Some(probability) = study.probability.as_ref().filter(|it| !it.enclosure) else { return Vec::new() };
     let range = |(drawn, it): (usize, &UncertainInput)| {
-        let (mean, sd) = (it.distribution.mean(), it.distribution.sd());
-        let (low, high) = (mean - MOST_SDS * sd, mean + MOST_SDS * sd);
-        let described = &study.model.inputs[it.input];
-        let within = |value: f64| if it.effect == Effect::Is && !described.valid.contains(value) { mean } else { value };
-        let (from, to) = (within(low), within(high));
+        let (mean, sd) = (it.mean(), it.distribution.sd());
+        let valid = &study.model.inputs[it.input].valid;
+        let (least, largest) = match it.effect {
+            Effect::Is => (valid.low, valid.high),
+            Effect::Times => (0.0, f64::INFINITY),
+            Effect::Plus => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        let (from, to) = ((mean - MOST_SDS * sd).max(least), (mean + MOST_SDS * sd).min(largest));
         (from < to && (to - from).is_finite()).then_some(GivenRange::Mean { drawn, from, to })
     };
     probability.inputs.iter().enumerate().filter_map(range).collect()
@@ -130,13 +137,17 @@ fn fixed_range(study: &Study, input: usize) -> Option<Axis> {
 
 /// The inputs that have one value.
 pub fn fixed_inputs(study: &Study) -> impl Iterator<Item = usize> {
-    let is_drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
+    // A tolerance that is a part of the model has an input of its own.
+    let is_drawn = |input: usize| {
+        let name = &study.model.inputs[input].name;
+        study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.input == input || it.name == *name))
+    };
     let varies = |input: usize| {
         let mut axes = study.design.iter().chain(study.operating()).chain(&study.uncertainty);
         axes.any(|axis| axis.inputs().contains(&input))
     };
     let inputs = &study.model.inputs;
-    (0..inputs.len()).filter(move |&input| !varies(input) && !is_drawn(&inputs[input].name))
+    (0..inputs.len()).filter(move |&input| !varies(input) && !is_drawn(input))
 }
 
 /// Between which ends the slider of such an input runs.
@@ -187,6 +198,24 @@ mod tests {
         // With three cases the largest is at least the second.
         let three = study_of_text(&text.replace("[70, 150]", "[70, 120, 150]"));
         assert_eq!(ends(&given_ranges(&three, text).said), [(false, 0.0, 120.0), (true, 120.0, 230.0)]);
+    }
+
+    #[test]
+    fn a_logarithmic_range_stays_above_zero_and_a_mean_goes_to_the_end_of_what_is_valid() {
+        let text = "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[operation]\ndriver_speed_rpm = { from = 1000, to = 6000, count = 5, spacing = \"log\" }\n\
+                    [uncertainty]\nfriction = { uniform = [0.01, 0.15] }\n[probability]\ndraws = 64\n[fixed]\ntraction = 0.4\n[constraints]\nslip_margin = { min = 0 }\n\
+                    yield = { min = 0.5 }\n[objectives]\nyield = \"max\"\naxial_force_N = { goal = \"min\", over_draws = \"mean\" }\n";
+        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let given = given_ranges(&study, text);
+        let least = given.said.iter().find_map(|it| match it {
+            GivenRange::End(end) if !end.is_largest => Some(end.from),
+            _ => None,
+        });
+        assert_eq!(least, Some(100.0), "{given:?}");
+        let means: Vec<_> =
+            given.said.iter().filter_map(|it| if let GivenRange::Mean { from, to, .. } = it { Some((*from, *to)) } else { None }).collect();
+        // Six standard deviations of 0.14/sqrt(12) below 0.08 there is no friction.
+        assert!(means.len() == 1 && means[0].0 == 0.0 && (means[0].1 - (0.08 + 6.0 * 0.14 / 12_f64.sqrt())).abs() < 1e-9, "{means:?}");
     }
 
     #[test]

@@ -63,11 +63,14 @@ pub fn of_knee(plan: &Plan, text: &str, knee: u64, threads: usize, control: &Con
         (prepare + finish) * designs as f64 <= MOST_SECONDS && designs * judged <= MOST_NUMBERS
     };
     let is_proven = columns.iter().any(|it| plan.study.is_proven(it.quantity));
-    let Some(places) = GRAINS.into_iter().find(|&places| fits(axes, places)).filter(|_| !is_proven) else {
+    // Without defaults: formulas that they make longer would take more memory than `check` says.
+    let given = Given { defaults: Vec::new(), ..given_ranges(&plan.study, text) };
+    let all = axes + given.said.len() as u64;
+    let grain = |slices: u64| GRAINS.into_iter().find(|&places| fits(slices, places));
+    let Some(places) = grain(all).or_else(|| grain(axes)).filter(|_| !is_proven) else {
         return Ok(json!({ "design": knee.to_string(), "left_out": true }));
     };
-    // Without defaults: formulas that they make longer would take more memory than `check` says.
-    let given = Given { defaults: Vec::new(), ..given_ranges(&plan.study, text) }.as_far_as(|slices| fits(axes + slices as u64, places));
+    let given = given.as_far_as(|_| fits(all, places));
     let (columns, slices) = around_with(plan, knee, places, &given.ranges, threads, control)?;
     let mut told = told(plan, &columns, &slices, &given);
     told["design"] = knee.to_string().into();

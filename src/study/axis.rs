@@ -78,6 +78,11 @@ impl Levels {
         }
     }
 
+    /// Are the levels of a range apart by a factor?
+    pub(crate) fn is_logarithmic(&self) -> bool {
+        matches!(self, Self::Even { log: true, .. } | Self::Step { log: true, .. } | Self::Continuous { log: true, .. })
+    }
+
     /// Least and largest value.
     pub fn ends(&self) -> (f64, f64) {
         match self {
@@ -154,6 +159,11 @@ impl Axis {
             Self::Single { levels, .. } => is_number(levels.value(0)),
             Self::Joint { rows, .. } => rows.iter().any(|row| is_number(row[column])),
         }
+    }
+
+    /// Is it a range whose levels are apart by a factor?
+    pub(crate) fn is_logarithmic(&self) -> bool {
+        matches!(self, Self::Single { levels, .. } if levels.is_logarithmic())
     }
 
     /// Least and largest value of its input number `column`.

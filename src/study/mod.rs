@@ -31,11 +31,13 @@ pub use label::Label;
 pub use quantity::Quantity;
 #[doc(hidden)]
 pub use read::StudyEdits;
+#[cfg(feature = "pictures")]
+pub(crate) use read::entry_names;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{FileKind, Problem, StudyErrors, file_kind, parse_model, read_model};
 #[cfg(feature = "cli")]
-pub(crate) use read::{entry_leaves, entry_names, quoted_key, with_whole_paths};
+pub(crate) use read::{entry_leaves, quoted_key, with_whole_paths};
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, Study, Thresholds, TopSpec,

@@ -300,7 +300,7 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     // Loads that every draw must survive too.
     assert!(place("With other loads, uncertainties and fixed values") < place("torque_Nm, the largest"), "{order:?}");
     let said = browser.text("document.querySelector('.slices').textContent");
-    assert!(said.contains("its next value") && !said.contains("end of its slider"), "{said}");
+    assert!(said.contains("not beyond its other values") && !said.contains("end of its slider"), "{said}");
     // What the study leaves at its default is folded up, drawn once it is opened, and only then saved.
     let fold = |browser: &mut Browser, is_open: bool| {
         browser.evaluate(&format!("document.querySelector('#around details.slice-group').open = {is_open}"));

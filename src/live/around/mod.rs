@@ -105,7 +105,9 @@ pub fn around_with(
 ) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
     let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
-    let line = DesignLine { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
+    let needs_draws = given.iter().any(|it| !matches!(it, GivenRange::Fixed(_)));
+    let drawn = if needs_draws { study.drawn_columns().map_err(Error::Request)? } else { Vec::new() };
+    let line = DesignLine { study, inputs: plan.space.inputs(design, 0), columns: &columns, drawn, threads, control };
     let own = sliced(plan).map(|axis| line.slice(axis, most));
     let given = given.iter().map(|it| match it {
         GivenRange::Fixed(axis) => line.slice(axis, most),
@@ -121,6 +123,8 @@ struct DesignLine<'a> {
     study: &'a Study,
     inputs: Vec<f64>,
     columns: &'a [Column],
+    /// The draws, where what the study gives is varied.
+    drawn: Vec<Vec<f64>>,
     threads: usize,
     control: &'a Control,
 }
@@ -224,16 +228,18 @@ impl DesignLine<'_> {
         let column = axis.inputs().iter().position(|it| *it == end.input).unwrap_or(0);
         let (least, largest) = axis.ends(column);
         let own = if end.is_largest { largest } else { least };
-        let drawn = study.drawn_columns().map_err(Error::Request)?;
         let other = |alone: &Study, value: f64| {
             let mut others = axes.to_vec();
             others[end.axis] = with_end(axis, column, own, value);
             if end.is_uncertain {
                 return Ok(Study { uncertainty: others, ..alone.clone() });
             }
-            alone.with_operating(others, &drawn).map_err(Error::Request)
+            alone.with_operating(others, &self.drawn).map_err(Error::Request)
         };
-        let (values, rows) = self.of_studies(own, (end.from, end.to), most, other)?;
+        let places = AxisPlaces::Between { low: end.from, high: end.to, log: axis.is_logarithmic(), own };
+        let (values, mut rows) = self.of_studies(&places, own, most, other)?;
+        // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
+        rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
         let described = &study.model.inputs[end.input];
         let which = match end.is_largest {
             _ if least == largest => "",
@@ -245,18 +251,17 @@ impl DesignLine<'_> {
     }
 
     /// Over the mean of a distribution.
-    fn mean(&self, number: usize, range: (f64, f64), most: u64) -> Result<Slice> {
+    fn mean(&self, number: usize, (low, high): (f64, f64), most: u64) -> Result<Slice> {
         let study = self.study;
-        let drawn = study.drawn_columns().map_err(Error::Request)?;
         let probability = study.probability.as_ref().ok_or_else(|| Error::Request("nothing is drawn".to_owned()))?;
         let uncertain = &probability.inputs[number];
-        let own = uncertain.distribution.mean();
+        let own = uncertain.mean();
         let other = |alone: &Study, value: f64| {
-            let mut moved = drawn.clone();
+            let mut moved = self.drawn.clone();
             moved[number].iter_mut().for_each(|it| *it += value - own);
             Ok(alone.with_drawn(moved))
         };
-        let (values, rows) = self.of_studies(own, range, most, other)?;
+        let (values, rows) = self.of_studies(&AxisPlaces::Between { low, high, log: false, own }, own, most, other)?;
         let (of, unit) = match uncertain.effect {
             Effect::Is => ("mean", study.model.inputs[uncertain.input].unit.symbol),
             Effect::Plus => ("mean deviation", study.model.inputs[uncertain.input].unit.symbol),
@@ -268,8 +273,8 @@ impl DesignLine<'_> {
     /// The design in studies that differ in a number of theirs, each from the study of this design alone.
     fn of_studies(
         &self,
+        places: &AxisPlaces,
         own: f64,
-        (low, high): (f64, f64),
         most: u64,
         other: impl Fn(&Study, f64) -> Result<Study> + Sync,
     ) -> Result<(Vec<f64>, Vec<Row>)> {
@@ -285,15 +290,17 @@ impl DesignLine<'_> {
             each.into_iter().collect::<Result<Vec<Row>>>()
         };
         let most = if study.probability.is_some() { most.min(DRAWN_PLACES) } else { most };
-        let (values, mut rows) = along_places(&AxisPlaces::Between { low, high, log: false, own }, own, most, judged)?;
-        // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
-        rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
-        Ok((values, rows))
+        along_places(places, own, most, judged)
     }
 }
 
-/// An axis with another end of one of its inputs: what was there goes to `value`.
+/// An axis with another end of one of its inputs: what was there goes to `value`, and between the ends of a range as many levels as before
+/// lie.
 fn with_end(axis: &Axis, column: usize, own: f64, value: f64) -> Axis {
+    // As the study has it, its levels are those of its steps, to the last bit.
+    if value == own {
+        return axis.clone();
+    }
     let moved = |it: f64| if it == own { value } else { it };
     let (input, levels) = match axis {
         Axis::Single { input, levels } => (input, levels),

@@ -66,9 +66,7 @@ impl AxisPlaces {
     pub(super) fn new(levels: &Levels, own: f64) -> Self {
         if levels.count() > MOST_LEVELS || matches!(levels, Levels::Continuous { .. }) {
             let (low, high) = levels.ends();
-            let log =
-                matches!(levels, Levels::Even { log: true, .. } | Levels::Step { log: true, .. } | Levels::Continuous { log: true, .. });
-            return Self::Between { low: low.min(high), high: low.max(high), log, own };
+            return Self::Between { low: low.min(high), high: low.max(high), log: levels.is_logarithmic(), own };
         }
         let mut all: Vec<f64> = (0..levels.count()).map(|level| levels.value(level)).chain([own]).collect();
         all.sort_by(f64::total_cmp);

@@ -223,7 +223,7 @@
   };
 
   let rebuild = null; // what makes the card that is open
-  // The head stays in sight where the rest is scrolled.
+  // Of a card below the plots the head stays in sight while the rest is scrolled.
   const fill = (card, [head, ...parts]) => card.replaceChildren(head, page.element("div", { class: "card-body" }, parts));
   const pressed = { is: false, later: false }; // is a button held down on the card, and is it to be built anew then?
 

@@ -56,13 +56,13 @@
     const found = reach(slice);
     const unit = slice.unit ? ` ${page.unit(slice.unit)}` : "";
     if (!found) return "this design is infeasible";
-    // An end of what the scenarios say goes as far as the value next to it, all else as far as its slider.
+    // An end of what the scenarios say goes as far as the other values of the input, all else as far as its slider.
     const towardsOthers = !slice.isGiven ? "" : slice.input.endsWith(", the largest") ? "down" : slice.input.endsWith(", the least") ? "up" : "";
     const way = (word, { last, next }) => {
       const free = Math.abs(slice.at[last] - slice.own);
       const [shown, beyond] = toldApart(slice.at[last], next === null ? null : slice.at[next]);
       const end = `${shown}${unit}`;
-      if (next === null && word === towardsOthers) return `${word} by ${page.short(free)} to ${end}, its next value`;
+      if (next === null && word === towardsOthers) return `${word} by ${page.short(free)} to ${end}, not beyond its other values`;
       if (next === null && slice.isGiven) return free === 0 ? `${word}: not looked at` : `${word} by ${page.short(free)} to ${end}, as far as this looks`;
       if (next === null) return free === 0 ? `${word}: it is at the end of its axis` : `${word} by ${page.short(free)} to ${end}, the end of its axis`;
       const fails = `at ${beyond}${unit} ${failsAt(slice, columns, next)}`;
@@ -147,8 +147,9 @@
     return svg.node();
   };
 
+  let isUnfolded = false; // the inputs that the study leaves out
+
   page.drawSlices = (box, { columns, slices, given = 0, defaults = 0, given_left_out: isLeftOut = false }) => {
-    const wasOpen = box.querySelector("details.slice-group")?.open ? "" : null;
     const caption = (column) => page.element("figcaption", { title: column.doc }, page.breakable(column.name), column.unit ? page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`) : null);
     const cell = (slice, column, line) => (isSame(line) ? null : page.element("figure", { class: "slice-cell" }, caption(column), chart(slice, column, line)));
     const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
@@ -158,12 +159,15 @@
     const [ofGiven, ofDefaults] = [slices.length - given, slices.length - defaults];
     const saidOtherwise = ofGiven < ofDefaults ? [page.element("h3", { class: "slice-group" }, "With other loads, uncertainties and fixed values"), ...group(ofGiven, ofDefaults)] : [];
     // What is folded up is drawn once somebody looks.
-    const unfold = ({ target }) => target.open && target.children.length === 1 && target.append(...group(ofDefaults));
-    const leftOut = defaults > 0 ? page.element("details", { class: "slice-group", open: wasOpen, toggle: unfold }, page.element("summary", {}, `With other defaults: ${page.count(defaults)} inputs that the study leaves out`), wasOpen === "" ? group(ofDefaults) : null) : [];
+    const unfold = ({ target }) => {
+      isUnfolded = target.open;
+      if (isUnfolded && target.children.length === 1) target.append(...group(ofDefaults));
+    };
+    const leftOut = defaults > 0 ? page.element("details", { class: "slice-group", open: isUnfolded, toggle: unfold }, page.element("summary", { "data-focus": "defaults" }, `With other values of what the study leaves out or takes from a preset (${page.count(defaults)})`), isUnfolded ? group(ofDefaults) : null) : [];
     const list = page.element("div", { class: "slices", "data-testid": "slices" }, group(0, ofGiven), saidOtherwise, leftOut);
     const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst. An arrow: a limit beyond the chart.");
-    const note = isLeftOut ? page.element("p", { class: "hint", "data-testid": "given-left-out" }, "Other loads, uncertainties and fixed values are left out: a design of this study takes too long to judge.") : "";
-    box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list, note);
+    const note = isLeftOut ? page.element("p", { class: "hint", "data-testid": "given-left-out" }, "Other loads, uncertainties and fixed values are left out: they would take too long, or too much of this page.") : "";
+    page.keepFocus(box, () => box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list, note));
   };
 
   // The page of a result holds those of the knee only.

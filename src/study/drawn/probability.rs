@@ -70,11 +70,15 @@ pub struct UncertainInput {
 const ROUNDING: f64 = 1e-12;
 
 impl UncertainInput {
+    /// The mean of what is drawn; 0 where numbers that cancel leave a rest of their rounding errors.
+    pub(crate) fn mean(&self) -> f64 {
+        let mean = self.distribution.mean();
+        if mean.abs() < ROUNDING * self.distribution.sd() { 0.0 } else { mean }
+    }
+
     /// The distribution in words: its name, where it is cut off, its mean and standard deviation.
     pub fn in_words(&self) -> String {
-        let (mean, sd) = (self.distribution.mean(), self.distribution.sd());
-        // Numbers that cancel leave a rest of their rounding errors.
-        let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
+        let (mean, sd) = (self.mean(), self.distribution.sd());
         let law = format!("{}{}: mean {}, sd {}", self.law.name(), self.law.cut_in_words(), short(mean), short(sd));
         self.effect.in_words_with(&law)
     }

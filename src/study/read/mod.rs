@@ -60,8 +60,10 @@ pub(super) use law::{DISCRETE, LAWS, LEFT_OUT, LISTED, PARAMETERS};
 pub(super) use model_file::KEYS as MODEL_KEYS;
 pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
+#[cfg(feature = "pictures")]
+pub(crate) use part::entry_names;
 #[cfg(feature = "cli")]
-pub(crate) use part::{entry_leaves, entry_names, quoted_key, with_whole_paths};
+pub(crate) use part::{entry_leaves, quoted_key, with_whole_paths};
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};

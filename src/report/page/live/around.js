@@ -14,7 +14,9 @@
     const design = known ? known.design : page.designOf(row);
     const title = `Around design ${design}${page.state.card === null && !known ? ` (${page.chosenWord()})` : ""}`;
     const box = section.querySelector(".around-box") || page.element("div", { class: "around-box" });
-    section.replaceChildren(page.element("h2", { id: "around-title" }, title), box);
+    // A box that stays where it is keeps the focus.
+    if (box.isConnected) page.byId("around-title").replaceChildren(title);
+    else section.replaceChildren(page.element("h2", { id: "around-title" }, title), box);
     if (!box.hasChildNodes()) box.append(page.element("p", { class: "hint" }, "being computed"));
     asking = new AbortController();
     try {
