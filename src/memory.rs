@@ -37,13 +37,15 @@ const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
 const ROW_LABEL: u64 = 100;
-/// Bytes of the page with what is around the knee, of a number in a cell of a map that it shows (a cell has three or four, read as text), of a design on it, of each
+/// Bytes of the page, of a number in a cell of a map that it shows (a cell has three or four, read as text), of a design on it, of each
 /// output of such a design, and of a row of the list of all designs.
-const PAGE: u64 = 2_000_000;
-const PAGE_NUMBER: u64 = 70;
+const PAGE: u64 = 1_000_000;
+const PAGE_NUMBER: u64 = 76;
 const PAGE_ROW: u64 = 1_000;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_500;
+/// Bytes of the slices around the knee, which are free again before the rest of the page takes as much.
+const AROUND: u64 = 2_700_000;
 /// Bytes of a column or an axis of a design that is a dot on the page: packed, as text, and what its row of the table leaves.
 const DOT: u64 = 90;
 /// Bytes of a combination of inputs whose sensitivity is looked at.
@@ -179,7 +181,7 @@ impl Needs {
             times(sizes.dots, DOT * sizes.dotted),
             together(&certify::all_columns(&plan.study), front.min(MOST_ON_PAGE as u64)),
         ];
-        let page = if page { sum(&[state, PAGE, sum(&on_page)]) } else { 0 };
+        let page = if page { sum(&[state, PAGE, sum(&on_page).max(AROUND)]) } else { 0 };
         let merged = sum(&[shard, times(sizes.cells, CELL)]);
         let with_margin = |bytes: u64| bytes / 100 * MARGIN;
         Self {
