@@ -7,7 +7,7 @@ use crate::study::{Axis, Levels, Study, UncertainInput, entry_names};
 
 /// Standard deviations by which a mean is moved at most.
 const MOST_SDS: f64 = 6.0;
-/// Part of its least value to which a range with factors between its levels goes.
+/// The least value of a logarithmic range is divided by this at most.
 const FURTHEST_FACTOR: f64 = 10.0;
 /// Whole numbers that are looked at on either side of the own one.
 const NEIGHBOURS: f64 = (PLACES / 2) as f64;
@@ -15,13 +15,13 @@ const NEIGHBOURS: f64 = (PLACES / 2) as f64;
 /// What a study gives every design, as far as its sliders go.
 #[derive(Debug)]
 pub struct Given {
-    /// The ends of what it says of loads and of uncertain inputs, and the numbers that the file fixes.
+    /// The ends of what it says of loads and of uncertain inputs, the means of distributions, and the numbers that the file fixes.
     pub said: Vec<GivenRange>,
     /// Inputs that the file leaves at their defaults.
     pub defaults: Vec<GivenRange>,
 }
 
-/// As much of it as there is time for.
+/// As much of it as fits.
 #[derive(Debug)]
 pub struct GivenSlices {
     /// What is varied: the defaults last.
@@ -73,9 +73,9 @@ fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axi
         return Vec::new();
     }
     let (low, high) = slider_ends(described, least, largest);
-    // No factor leads to zero.
+    // A logarithmic range cannot begin at zero.
     let low = if axis.is_logarithmic() { low.max(least / FURTHEST_FACTOR) } else { low };
-    // An end goes as far as the value next to it: beyond, that one would be the end. Between the ends of a range all follow.
+    // An end of a list goes as far as the value next to it, which would be the end beyond. The levels of a range move with its end.
     let (mut after_least, mut before_largest) = (largest, least);
     for value in listed(axis, column) {
         if value > least {

@@ -10,6 +10,7 @@ pub(super) const HALVINGS: usize = 16;
 const HALVINGS_BETWEEN: usize = 6;
 /// Axes with more levels are taken for ranges.
 const MOST_LEVELS: u64 = 1 << 20;
+
 /// Some places of an axis, the ends of what is feasible to either side of the own one among them, and the design at each.
 pub(super) fn along_places(
     places: &AxisPlaces,
