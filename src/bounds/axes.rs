@@ -237,23 +237,41 @@ impl Axes {
         }
     }
 
-    /// The rows that a box touches and the places that it has in each, ascending; a row has so many designs.
-    pub fn rows(&self, spans: &Spans, row: u64) -> (Vec<u64>, Vec<u64>) {
-        let slow = self.steps.iter().take_while(|&&step| step >= row).count();
-        let mut rows = self.sums(spans, 0..slow);
-        rows.iter_mut().for_each(|position| *position /= row);
-        (rows, self.sums(spans, slow..self.designs))
+    /// The axis of designs of which a box has most levels.
+    pub fn longest(&self, spans: &Spans) -> usize {
+        (0..self.designs).max_by_key(|&axis| spans[axis].count()).unwrap_or(0)
     }
 
-    /// All positions that some axes of a box reach, ascending.
-    fn sums(&self, spans: &Spans, axes: Range<usize>) -> Vec<u64> {
-        let mut sums = vec![0];
-        for axis in axes {
-            let (span, step) = (spans[axis], self.steps[axis]);
-            sums = sums.into_iter().flat_map(|sum| (span.low..=span.high).map(move |level| sum + u64::from(level) * step)).collect();
-        }
-        sums
+    /// The rows that a box touches and the places that it has in each, ascending; a row has so many designs.
+    pub fn rows(&self, spans: &Spans, row: u64) -> (Vec<u64>, Vec<u64>) {
+        let slow = self.slow(row);
+        let step = |axis: usize| self.steps[axis];
+        let mut rows = sums(spans, 0..slow, step);
+        rows.iter_mut().for_each(|position| *position /= row);
+        (rows, sums(spans, slow..self.designs, step))
     }
+
+    /// What the same rows and places add to the index of a design, in the same order.
+    pub fn indices(&self, spans: &Spans, row: u64) -> (Vec<u64>, Vec<u64>) {
+        let slow = self.slow(row);
+        let stride = |axis: usize| self.all[axis].stride;
+        (sums(spans, 0..slow, stride), sums(spans, slow..self.designs, stride))
+    }
+
+    /// The axes along which a row of so many designs does not go.
+    fn slow(&self, row: u64) -> usize {
+        self.steps.iter().take_while(|&&step| step >= row).count()
+    }
+}
+
+/// The sums of what the levels of some axes of a box add, the last axis fastest: each level as much as the one before and a step.
+fn sums(spans: &Spans, axes: Range<usize>, step: impl Fn(usize) -> u64) -> Vec<u64> {
+    let mut sums = vec![0];
+    for axis in axes {
+        let (span, step) = (spans[axis], step(axis));
+        sums = sums.into_iter().flat_map(|sum| (span.low..=span.high).map(move |level| sum + u64::from(level) * step)).collect();
+    }
+    sums
 }
 
 fn axis(plan: &Plan, dimension: &SpaceDimension, stride: u64) -> BoxAxis {
@@ -303,6 +321,9 @@ mod tests {
                     let row = plan.fast.count();
                     let (rows, places) = axes.rows(spans, row);
                     positions.extend(rows.iter().flat_map(|it| places.iter().map(move |place| it * row + place)));
+                    let (of_rows, of_places) = axes.indices(spans, row);
+                    let indices = of_rows.iter().flat_map(|it| of_places.iter().map(move |place| it + place));
+                    assert!(indices.eq(positions[before as usize..].iter().map(|&it| plan.design_at(it))));
                     assert_eq!(positions.len() as u64 - before, axes.count(spans));
                 }
                 assert_eq!(positions, (first..end).collect::<Vec<_>>());

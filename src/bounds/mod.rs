@@ -11,6 +11,7 @@ mod box_columns;
 mod cells;
 mod chain;
 mod count;
+mod drawn;
 mod leaf;
 mod open;
 mod pairing;
@@ -76,6 +77,12 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     }
     if let Some(why) = Reported::needs(&study.report).into_iter().find_map(ReducerNeeds::beyond_bounds) {
         return Some(why.to_owned());
+    }
+    if study.report.sample.is_some() && plan.designs() > drawn::MOST_DESIGNS {
+        let most = drawn::MOST_DESIGNS;
+        return Some(format!(
+            "sample in [report] takes a look at the place of every design in a shuffled order, and bounds do for {most} at most"
+        ));
     }
     let cells = |map: &MapSpec| study.design[map.x].count().saturating_mul(study.design[map.y].count());
     if study.report.maps.iter().any(|map| cells(map) > MOST_CELLS) {
@@ -210,6 +217,11 @@ impl BoundedStudy {
         let extremes = (0..objectives).flat_map(|objective| [false, true].map(|largest| Sought::Extreme { objective, largest }));
         let maps = plan.study.report.maps.iter().enumerate().filter(|(_, spec)| spec.value != Best::Share);
         front.into_iter().chain(top).chain(extremes).chain(maps.map(|(number, _)| Sought::Cells(number))).collect()
+    }
+
+    /// How many times a range is searched for what a result of this plan names.
+    pub fn searches(plan: &Plan) -> usize {
+        Self::sought(plan).len() + usize::from(plan.study.report.sample.is_some())
     }
 
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than

@@ -176,6 +176,7 @@ impl BoxSearch<'_> {
             let mut own = self.reduction.start_after(known.clone());
             // Nothing is counted here, and maps are large.
             own.reported.histograms.clear();
+            own.reported.samples.clear();
             if self.cells.is_none() {
                 own.reported.maps.clear();
             }

@@ -131,20 +131,18 @@ impl Rest {
     fn left(&self, axes: &Axes) -> u64 {
         self.boxes.iter().map(|spans| axes.count(spans)).sum()
     }
+}
 
-    /// The boxes, the large ones cut so that all threads have work until the end.
-    fn cut_for(&self, threads: usize, axes: &Axes) -> Vec<Spans> {
-        let mut boxes = self.boxes.clone();
-        while boxes.len() < PARTS * threads {
-            let Some(at) = (0..boxes.len()).max_by_key(|&at| axes.count(&boxes[at])).filter(|&at| axes.count(&boxes[at]) > 1) else {
-                break;
-            };
-            let spans = boxes.swap_remove(at);
-            let axis = (0..axes.designs).max_by_key(|&axis| spans[axis].count()).expect("a box of more than one design has an axis");
-            boxes.extend(spans.halves(axis));
-        }
-        boxes
+/// Boxes, each with what belongs to it, the large ones cut so that all threads have work until the end.
+pub(super) fn cut_for<T: Clone>(threads: usize, mut boxes: Vec<(Spans, T)>, axes: &Axes) -> Vec<(Spans, T)> {
+    while boxes.len() < PARTS * threads {
+        let Some(at) = (0..boxes.len()).max_by_key(|&at| axes.count(&boxes[at].0)).filter(|&at| axes.count(&boxes[at].0) > 1) else {
+            break;
+        };
+        let (spans, own) = boxes.swap_remove(at);
+        boxes.extend(spans.halves(axes.longest(&spans)).map(|half| (half, own.clone())));
     }
+    boxes
 }
 
 impl BoundedStudy {
@@ -224,10 +222,11 @@ impl BoundedStudy {
     ) -> Option<(u64, Settled)> {
         let most = (range.end - range.start) / COUNTED_SHARE;
         let rest = shared.rest.as_ref().filter(|rest| rest.left(&self.axes) <= rest.judged.min(most))?;
-        let (boxes, taken) = (rest.cut_for(threads, &self.axes), AtomicUsize::new(0));
+        let boxes = cut_for(threads, rest.boxes.iter().map(|spans| (*spans, ())).collect(), &self.axes);
+        let taken = AtomicUsize::new(0);
         let counted = on_threads(0..threads, |_| {
             let (mut counter, mut total) = (self.counter(stop), 0);
-            while let Some(spans) = boxes.get(taken.fetch_add(1, Ordering::Relaxed)) {
+            while let Some((spans, ())) = boxes.get(taken.fetch_add(1, Ordering::Relaxed)) {
                 total += counter.count(spans, &all_open(&self.requirements, &self.axes))?;
                 told(self.axes.count(spans));
             }

@@ -21,6 +21,7 @@ use multiversion::multiversion;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value};
+use std::ops::RangeInclusive;
 
 /// Its files.
 const FILES: [&str; 2] = ["sample.csv", "sample.parquet"];
@@ -55,6 +56,17 @@ impl Shuffle {
             (high, low) = (low, high ^ hash(low ^ key));
         }
         u64::from(high) << 32 | u64::from(low)
+    }
+
+    /// Which of the designs `row_index + offset` have their places in a range: `take` is told where they stand among the offsets.
+    pub fn each_within(self, places: &RangeInclusive<u64>, row_index: u64, offsets: &[u64], mut take: impl FnMut(usize)) {
+        let mut found = [0; CHUNK];
+        for (number, offsets) in offsets.chunks(CHUNK).enumerate() {
+            if places_of(self, row_index, offsets, &ALL[..offsets.len()], *places.end(), &mut found) {
+                let within = found[..offsets.len()].iter().enumerate().filter(|(_, place)| places.contains(place));
+                within.for_each(|(lane, _)| take(number * CHUNK + lane));
+            }
+        }
     }
 }
 
@@ -127,11 +139,13 @@ impl FeasibleSample {
 
 /// Designs of a block that are looked at together.
 const CHUNK: usize = 64;
+/// None of them left out.
+const ALL: [u64; CHUNK] = [u64::MAX; CHUNK];
 
 /// The places of some designs, and whether any feasible one of them is at most at `last`. Round by round over all of them, in halves of
 /// 32 bits: design by design it takes more than twice as long.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn places(shuffle: Shuffle, row_index: u64, offsets: &[u64], alive: &[u64], last: u64, places: &mut [u64; CHUNK]) -> bool {
+fn places_of(shuffle: Shuffle, row_index: u64, offsets: &[u64], alive: &[u64], last: u64, places: &mut [u64; CHUNK]) -> bool {
     let (mut high, mut low) = ([0u32; CHUNK], [0u32; CHUNK]);
     for ((high, low), &offset) in high.iter_mut().zip(&mut low).zip(offsets) {
         let index = row_index + offset;
@@ -160,7 +174,7 @@ impl Reducer for FeasibleSample {
     }
 
     fn needs(report: &Report) -> Option<ReducerNeeds> {
-        report.sample.map(|_| ReducerNeeds::Designs("sample in [report] asks for designs from all over the feasible ones"))
+        report.sample.map(|_| ReducerNeeds::Candidates)
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
@@ -168,7 +182,7 @@ impl Reducer for FeasibleSample {
         for first in (0..block.count()).step_by(CHUNK) {
             let lanes = first..block.count().min(first + CHUNK);
             let (offsets, alive) = (&block.offsets[lanes.clone()], &block.alive[lanes.clone()]);
-            if !places(self.shuffle, block.row_index, offsets, alive, self.last, &mut found) {
+            if !places_of(self.shuffle, block.row_index, offsets, alive, self.last, &mut found) {
                 continue;
             }
             for (lane, place) in lanes.zip(found) {
@@ -269,9 +283,9 @@ mod tests {
             let expected: Vec<u64> = offsets[..count].iter().map(|offset| shuffle.place(row_index + offset)).collect();
             let mut found = [0; CHUNK];
             for last in [0, u64::MAX / 2, u64::MAX] {
-                let any = places(shuffle, row_index, &offsets[..count], &vec![u64::MAX; count], last, &mut found);
+                let any = places_of(shuffle, row_index, &offsets[..count], &vec![u64::MAX; count], last, &mut found);
                 assert_eq!((&found[..count], any), (&expected[..], expected.iter().any(|&place| place <= last)));
-                assert!(!places(shuffle, row_index, &offsets[..count], &vec![0; count], last, &mut found));
+                assert!(!places_of(shuffle, row_index, &offsets[..count], &vec![0; count], last, &mut found));
             }
         }
     }

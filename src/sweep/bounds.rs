@@ -145,7 +145,7 @@ pub(super) fn settle(job: SweepJob<'_>, work: &mut SweepWork<'_>, leaving: Optio
     let mut layout = BoundedStudy::new(plan).ok_or_else(refuse)?;
     layout.most_points = options.most_points(plan);
     let whole = job.whole();
-    let searches = (whole.end - whole.start, BoundedStudy::sought(plan).len());
+    let searches = (whole.end - whole.start, BoundedStudy::searches(plan));
     let counts = (work.todo.count(), BoundedStudy::tallies(plan).len() + 1);
     let watch = Watch::new(control, leaving, searches, counts);
     let over = AtomicBool::new(false);
@@ -203,7 +203,7 @@ fn settle_watched(
     }
     // What was searched is final.
     options.check_budget(plan, &state)?;
-    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
+    let passes = BoundedStudy::searches(plan) as u64 + 1;
     let what = if BoundedStudy::tallies(plan).is_empty() { "count" } else { "counts" };
     control.settles(format!("{what}, {passes} of {passes}"));
     watch.counts();
@@ -287,20 +287,28 @@ fn search(
     certificate: &mut Certificate,
 ) -> bool {
     let SweepJob { plan, tables, reduction, options, control } = job;
-    let all = BoundedStudy::sought(plan);
-    let passes = all.len() as u64 + 1;
+    let (mut passes, all_passes) = (1.., BoundedStudy::searches(plan) + 1);
+    let mut begin = |what: &str| control.settles(format!("{what}, {} of {all_passes}", passes.next().unwrap_or(all_passes)));
     let mut workers: Vec<Worker<'_>> = (0..options.threads.max(1)).map(|_| layout.worker(plan, tables, watch.stop())).collect();
     let progress = |designs: u64| watch.settle(designs);
-    for (number, sought) in all.into_iter().enumerate() {
-        control.settles(format!("{}, {} of {passes}", in_words(plan, sought), number + 1));
-        let search = SearchJob { plan, reduction, range: whole, stop: watch.stop(), progress: &progress };
+    let search = SearchJob { plan, reduction, range: whole, stop: watch.stop(), progress: &progress };
+    for sought in BoundedStudy::sought(plan) {
+        begin(&in_words(plan, sought));
         match layout.search_sharing(search, sought, shared, &mut workers, &mut work.reducers) {
             Some(searched) => certificate.searches.push((in_words(plan, sought), searched)),
             None => return false,
         }
     }
+    if plan.study.report.sample.is_some() {
+        begin(SAMPLE);
+        let Some(searched) = layout.draw(search, &mut workers, &mut work.reducers) else { return false };
+        certificate.searches.push((SAMPLE.to_owned(), searched));
+    }
     true
 }
+
+/// What is searched for by [`BoundedStudy::draw`].
+const SAMPLE: &str = "sample";
 
 /// Takes the number of feasible designs from a search that has counted all of them on its way, if one has; or counts what the searches
 /// have left, if that is little.

@@ -19,6 +19,7 @@ resultant_force_N = "min"
 mean_radius_mm = "min"
 [report]
 top = { by = "resultant_force_N", count = 5 }
+sample = 7
 histograms = [{ of = "resultant_force_N", bins = 5 }]
 maps = [{ x = "mean_radius_mm", y = "slack_tension_N", value = "resultant_force_N" }]
 "#;
@@ -54,6 +55,7 @@ fn a_wrong_count_a_lost_point_and_another_extreme_are_noticed() {
     assert!(objection(&|state| state.reported.top.clear()).contains("the best"));
     assert!(objection(&|state| state.reported.histograms[0].above += 1).contains("histograms"));
     assert!(objection(&|state| state.reported.maps.clear()).contains("maps"));
+    assert!(objection(&|state| state.reported.samples.clear()).contains("the sample"));
 }
 
 #[test]

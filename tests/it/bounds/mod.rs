@@ -188,6 +188,7 @@ const EVERY_FEATURE: &[&str] = &[
     "strict bound",
     "bounds on both sides",
     "top",
+    "sample",
     "histogram",
     "histogram with a given range",
     "map of the best",
@@ -217,6 +218,8 @@ const EVERY_FEATURE: &[&str] = &[
     "search: infeasible boxes",
     "search: beaten boxes",
     "search: evaluated",
+    "sample: infeasible boxes",
+    "sample: later designs",
     "judged for all",
     "judged for all, then counted",
     "in part judged for all",
@@ -270,6 +273,7 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
     note("strict bound", strict(true));
     note("bounds on both sides", study.constraints.iter().any(|it| it.low.is_some() && it.high.is_some()));
     note("top", study.report.top.is_some());
+    note("sample", study.report.sample.is_some());
     let report = &study.report;
     note("histogram", !report.histograms.is_empty());
     note("histogram with a given range", report.histograms.iter().any(|it| it.range.is_some()));
@@ -301,6 +305,10 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
         note("search: beaten boxes", it.beaten > 0);
         note("search: pairs", it.pairs > 0);
         note("search: evaluated", it.evaluated > 0);
+    }
+    for (_, it) in certificate.searches.iter().filter(|(what, _)| what == "sample") {
+        note("sample: infeasible boxes", it.infeasible > 0);
+        note("sample: later designs", it.beaten > 0);
     }
     for feature in had {
         *coverage.entry(feature).or_default() += 1;

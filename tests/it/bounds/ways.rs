@@ -7,7 +7,7 @@ use beltspace::checkpoint::Checkpoint;
 use beltspace::error::{Error, Result as Outcome};
 use beltspace::files::Claim;
 use beltspace::plan::Plan;
-use beltspace::reduce::{State, Top};
+use beltspace::reduce::{FeasibleSample, Reported, State, Top};
 use beltspace::study::Best;
 use beltspace::sweep::{Control, Settings, Swept, sweep, sweep_by_bounds};
 use beltspace::tiles::Shard;
@@ -39,6 +39,10 @@ pub fn difference(expected: &State, found: &State) -> Option<String> {
     let (expected, found) = (&expected.reported, &found.reported);
     if expected.histograms != found.histograms {
         return Some(format!("the histograms are {:?}, not {:?}", expected.histograms, found.histograms));
+    }
+    if expected.samples != found.samples {
+        let drawn = |it: &Reported| it.samples.iter().map(FeasibleSample::indices).collect::<Vec<_>>();
+        return Some(format!("the sample is {:?}, not {:?}", drawn(expected), drawn(found)));
     }
     if expected.maps.len() != found.maps.len() {
         return Some(format!("there are {} maps, not {}", expected.maps.len(), found.maps.len()));
@@ -77,7 +81,8 @@ pub fn unaccounted(plan: &Plan, certificate: &Certificate, counted: u64, searche
         return Some(format!("there are {} tallies", certificate.tallies.len()));
     }
     let objectives = plan.study.objectives.len();
-    let best = usize::from(objectives > 0) + usize::from(report.top.is_some()) + report.maps.len() - shares;
+    let asked = [objectives > 0, report.top.is_some(), report.sample.is_some()].map(usize::from);
+    let best = asked.iter().sum::<usize>() + report.maps.len() - shares;
     let searches = 2 * objectives + best;
     (certificate.searches.len() != searches).then(|| format!("there are {} searches, not {searches}", certificate.searches.len()))
 }

@@ -8,11 +8,16 @@ use std::sync::OnceLock;
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
+/// It with a sample of the feasible designs.
+fn drawn() -> String {
+    changed(SMALL, &[("[report]\n", "[report]\nsample = 60\n")])
+}
+
 /// The files of one undisturbed run of it, design by design.
 fn one_by_one() -> &'static Files {
     static FILES: OnceLock<Files> = OnceLock::new();
     FILES.get_or_init(|| {
-        let folder = folder_with("grid.toml", SMALL);
+        let folder = folder_with("grid.toml", &drawn());
         ask(folder.path(), "sweep grid.toml --method exhaustive --out out").text();
         let run = json_of(&folder.path().join("out/run.json"));
         assert_eq!((&run["method"], &run["method_chosen"]), (&"exhaustive".into(), &"asked for".into()));
@@ -34,7 +39,10 @@ fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
     let folder = folder_with("small.toml", SMALL);
     let pulley = ask(folder.path(), "models pulley --study").text();
     let refused = [
-        ("sample in [report]", report("sample = 100")),
+        (
+            "sample in [report] takes a look at the place of every design in a shuffled order, and bounds do for 10000000000 at most",
+            changed(&report("sample = 100"), &[("to = 30, count = 13", "to = 30, count = 13_000"), ("count = 21 }", "count = 21_000 }")]),
+        ),
         ("variants in [report]", changed(&report("variants = true"), &[("to = 0.50, count = 5", "to = 0.50, count = 2")])),
         (
             "a map in [report] has more than 1048576 cells",
@@ -87,6 +95,7 @@ fn assert_certified(run: &serde_json::Value) {
         "least band_count",
         "largest band_count",
         "map of axial_force_N",
+        "sample",
     ];
     assert_eq!(names, expected);
     let tallies = certificate["tallies"].as_array().expect("there are tallies");
@@ -110,7 +119,7 @@ fn assert_certified(run: &serde_json::Value) {
 
 #[test]
 fn the_files_are_the_same_and_the_record_says_how_they_came_about() {
-    let folder = folder_with("grid.toml", SMALL);
+    let folder = folder_with("grid.toml", &drawn());
     for options in ["--threads 1", "--threads 3 --engine cpu", "--threads 2 --tile 7"] {
         ask(folder.path(), &format!("sweep grid.toml --method bounds --out out --force {options}")).text();
         let out = folder.path().join("out");
@@ -123,8 +132,8 @@ fn the_files_are_the_same_and_the_record_says_how_they_came_about() {
 
 #[test]
 fn auto_says_why() {
-    let folder = folder_with("grid.toml", SMALL);
-    write(folder.path(), "sample.toml", &changed(SMALL, &[("[report]\n", "[report]\nsample = 100\n")]));
+    let folder = folder_with("grid.toml", &drawn());
+    write(folder.path(), "all.toml", &changed(SMALL, &[("[report]\n", "[report]\nfeasible = true\n")]));
     let chosen = |line: &str| {
         ask(folder.path(), &format!("sweep {line} --out out --force")).text();
         let run = json_of(&folder.path().join("out/run.json"));
@@ -135,8 +144,8 @@ fn auto_says_why() {
     let small = ("exhaustive".to_owned(), "the study is small enough to judge every design".to_owned());
     assert_eq!(chosen("grid.toml"), small);
     assert_eq!(chosen("grid.toml --method auto"), small);
-    let (method, why) = chosen("sample.toml");
-    assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: sample in [report]"), "{why}");
+    let (method, why) = chosen("all.toml");
+    assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: feasible in [report]"), "{why}");
 }
 
 /// A drive of which bounds settle almost nothing, with this many friction values; judging it takes a second or two.
@@ -208,7 +217,7 @@ fn auto_begins_by_bounds_and_leaves_them_where_they_do_not_pay() {
 
 #[test]
 fn shards_by_either_method_merge_to_the_same_files() {
-    let folder = folder_with("grid.toml", SMALL);
+    let folder = folder_with("grid.toml", &drawn());
     for methods in [["bounds"; 3], ["bounds", "exhaustive", "bounds"]] {
         let mut parts = Vec::new();
         for (at, method) in methods.iter().enumerate() {

@@ -252,13 +252,10 @@ impl Draft {
                 self.report.push(format!("maps = [{}]", maps.join(", ")));
             }
         }
-        // Bounds cannot give a sample.
-        if !self.for_bounds {
-            match random.below(6) {
-                0 => self.report.push(format!("sample = {}", random.pick(&[1, 7, 100, 10_000]))),
-                1 => self.report.push(format!("sample = {{ count = {}, seed = {} }}", random.pick(&[3, 40]), random.below(1000))),
-                _ => {}
-            }
+        match random.below(6) {
+            0 => self.report.push(format!("sample = {}", random.pick(&[1, 7, 100, 10_000]))),
+            1 => self.report.push(format!("sample = {{ count = {}, seed = {} }}", random.pick(&[3, 40]), random.below(1000))),
+            _ => {}
         }
         let mut columns: Vec<String> = Vec::new();
         for _ in 0..random.below(4) {
