@@ -149,7 +149,7 @@ fn another_result_is_laid_over_this_one_and_compared() {
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn what_was_added_is_clear_to_everybody_on_screens_of_any_size_and_on_paper() {
     let study = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/metal-cvt.toml")).expect("it is there");
-    let swept = Swept::text(&study.replace("[report]\n", "[report]\nsample = 2000\n"));
+    let swept = Swept::text(&study.replace("sample = 1000", "sample = 2000"));
     let size = std::fs::metadata(swept.page()).expect("there is a page").len();
     assert!(size < 2_000_000, "{size} bytes");
     let other = Swept::text(&study.replace("strength_MPa = 800", "strength_MPa = 820"));

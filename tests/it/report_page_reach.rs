@@ -172,7 +172,7 @@ fn a_saved_picture_has_of_a_list_what_the_page_shows_of_it_and_the_names_of_othe
     browser.evaluate("window.saved = null; document.querySelector('[data-testid=\"png front\"]').click()");
     browser.wait("window.saved instanceof Blob");
     let png = browser.evaluate(
-        "(async () => { const picture = await createImageBitmap(window.saved); const { width, height } = beltspace.page.pictureOf([...document.querySelectorAll('#others, #splom')]); \
+        "(async () => { const picture = await createImageBitmap(window.saved); const { width, height } = beltspace.page.pictureOf([...document.querySelectorAll('#sample, #others, #splom')]); \
          const canvas = new OffscreenCanvas(picture.width, picture.height); const context = canvas.getContext('2d'); context.drawImage(picture, 0, 0); \
          const colours = new Set(new Uint32Array(context.getImageData(0, 0, picture.width, picture.height).data.buffer)); \
          return { type: window.saved.type, wide: picture.width / width, high: picture.height / height, colours: colours.size }; })()",

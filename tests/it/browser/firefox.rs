@@ -36,7 +36,8 @@ impl Firefox {
             "() => document.addEventListener('securitypolicyviolation', (event) => console.error(`blocked: ${event.blockedURI}`))";
         wire.call("script.addPreloadScript", &json!({ "functionDeclaration": blocked }));
         wire.call("session.subscribe", &json!({ "events": ["log.entryAdded", "network.beforeRequestSent"] }));
-        let context = wire.call("browsingContext.getTree", &json!({}))["contexts"][0]["context"].clone();
+        // A tab of its own: that of the start may still be loading, and then a page that it is told to open never counts as loaded.
+        let context = wire.call("browsingContext.create", &json!({ "type": "tab" }))["context"].clone();
         (process, Box::new(Self { wire, context }))
     }
 
