@@ -11,6 +11,8 @@ const MOST_SDS: f64 = 6.0;
 const FURTHEST_FACTOR: f64 = 10.0;
 /// Whole numbers that are looked at on either side of the own one.
 const NEIGHBOURS: f64 = (PLACES / 2) as f64;
+/// Numbers that are looked at instead of a word.
+const NUMBERS: u32 = 9;
 
 /// What a study gives every design, as far as its sliders go.
 #[derive(Debug)]
@@ -51,7 +53,7 @@ pub fn given_ranges(study: &Study, text: &str) -> Given {
     let of_kind = |is_uncertain: bool, axes: &[Axis]| -> Vec<GivenRange> {
         let inputs = |axis: &Axis| (0..axis.inputs().len()).collect::<Vec<_>>();
         let each = axes.iter().enumerate().flat_map(|(number, axis)| inputs(axis).into_iter().map(move |column| (number, axis, column)));
-        each.flat_map(|(number, axis, column)| scenario_ends(study, is_uncertain, (number, axis), column)).map(GivenRange::End).collect()
+        each.flat_map(|(number, axis, column)| over_scenarios(study, is_uncertain, (number, axis), column)).collect()
     };
     let loads = of_kind(false, study.operating()).into_iter().chain(of_kind(true, &study.uncertainty));
     let means = means(study);
@@ -63,15 +65,15 @@ pub fn given_ranges(study: &Study, text: &str) -> Given {
     Given { said: loads.chain(means).chain(fixed(true)).collect(), defaults: fixed(false) }
 }
 
-/// The least and the largest value of an input in the scenarios, as far as there is something to look at.
-fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axis), column: usize) -> Vec<ScenarioEnd> {
+/// The least and the largest value of an input in the scenarios, as far as there is something to look at; of words each by itself.
+fn over_scenarios(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axis), column: usize) -> Vec<GivenRange> {
     let input = axis.inputs()[column];
     let described = &study.model.inputs[input];
-    let (least, largest) = axis.ends(column);
-    let has_words = [least, largest].into_iter().any(|it| described.word_for(it).is_some());
-    if described.integer || described.is_enumeration() || has_words {
-        return Vec::new();
+    if described.is_enumeration() || axis.has_number(column, |it| described.word_for(it).is_some()) {
+        let is_told = matches!(axis, Axis::Single { .. }) && (2..=PLACES).contains(&axis.count());
+        return is_told.then_some(GivenRange::Alone { is_uncertain, axis: number }).into_iter().collect();
     }
+    let (least, largest) = axis.ends(column);
     let (low, high) = slider_ends(described, least, largest);
     // A logarithmic range cannot begin at zero.
     let low = if axis.is_logarithmic() { low.max(least / FURTHEST_FACTOR) } else { low };
@@ -85,11 +87,20 @@ fn scenario_ends(study: &Study, is_uncertain: bool, (number, axis): (usize, &Axi
             before_largest = before_largest.max(value);
         }
     }
-    let end = |is_largest: bool, from: f64, to: f64| ScenarioEnd { is_uncertain, axis: number, input, is_largest, from, to };
+    let end = |is_largest: bool, from: f64, to: f64| {
+        let own = if is_largest { largest } else { least };
+        let (from, to) = if described.integer { neighbours(own, from, to) } else { (from, to) };
+        ScenarioEnd { is_uncertain, axis: number, input, is_largest, from, to }
+    };
     // A single value may be any.
     let ends =
         if least == largest { vec![end(true, low, high)] } else { vec![end(false, low, after_least), end(true, before_largest, high)] };
-    ends.into_iter().filter(|it| it.from < it.to && (it.to - it.from).is_finite()).collect()
+    ends.into_iter().filter(|it| it.from < it.to && (it.to - it.from).is_finite()).map(GivenRange::End).collect()
+}
+
+/// The whole numbers around one that are looked at: a formula that adds up over very many teeth takes time and memory.
+fn neighbours(own: f64, low: f64, high: f64) -> (f64, f64) {
+    (low.ceil().max(own - NEIGHBOURS), high.floor().min(own + NEIGHBOURS))
 }
 
 /// The means of the distributions. What is proven of a yield is proven of the distributions, not of the draws that are moved here.
@@ -118,16 +129,30 @@ fn listed(axis: &Axis, column: usize) -> Vec<f64> {
     }
 }
 
-/// The range of the slider of a fixed number.
+/// The range of the slider of a fixed number; the words of an input that takes no numbers, and of one that has a word now some numbers.
 fn fixed_range(study: &Study, input: usize) -> Option<Axis> {
     let (described, value) = (&study.model.inputs[input], study.fixed[input]);
     let (low, high) = ends_of_fixed(study, input);
-    if described.is_enumeration() || described.word_for(value).is_some() || !(high - low).is_finite() || !(low..=high).contains(&value) {
+    let words = described.words.iter().map(|it| it.1);
+    let listed = |levels: Vec<f64>| (levels.len() > 1).then_some(Axis::Single { input, levels: Levels::List(levels) });
+    if described.is_enumeration() {
+        return listed(words.collect());
+    }
+    if !(high - low).is_finite() {
+        return None;
+    }
+    if described.word_for(value).is_some() {
+        let place = |at: u32| low + (high - low) * f64::from(at) / f64::from(NUMBERS - 1);
+        let mut numbers: Vec<f64> = (0..NUMBERS).map(place).map(|it| if described.integer { it.round() } else { it }).collect();
+        numbers.retain(|&it| described.valid.contains(it));
+        numbers.dedup();
+        return listed(words.chain(numbers).collect());
+    }
+    if !(low..=high).contains(&value) {
         return None;
     }
     let levels = if described.integer {
-        // Its neighbours: a formula that adds up over very many teeth takes time and memory.
-        let (from, to) = (low.ceil().max(value - NEIGHBOURS), high.floor().min(value + NEIGHBOURS));
+        let (from, to) = neighbours(value, low, high);
         Levels::Step { from, step: 1.0, count: (to - from).max(0.0) as u64 + 1, log: false }
     } else {
         Levels::Continuous { from: low, to: high, log: false }

@@ -109,16 +109,19 @@ fn a_design_that_is_not_on_the_front_is_drawn_pinned_printed_and_in_the_address(
     browser.evaluate("window.print = () => (window.sheet = document.body.classList.contains('sheet'))");
     browser.click_on("#card-print");
     assert_eq!(browser.evaluate("window.sheet"), true);
+    browser.evaluate("beltspace.page.pin(0)");
     browser.click_on("#card-pin");
     assert_eq!(browser.text("document.querySelector('#card-pin').textContent"), "Unpin");
-    assert_eq!(browser.text("document.querySelector('#said').textContent"), format!("design {design} is pinned as A, 1 of 6"));
+    assert_eq!(browser.text("document.querySelector('#said').textContent"), format!("design {design} is pinned as B, 2 of 6"));
+    // Its letter stays when the one before it goes, in the address too.
+    browser.evaluate("beltspace.page.unpin(beltspace.page.pins()[0])");
     browser.picture("card-not-on-the-front");
-    browser.wait(&format!("location.hash.includes('p={design}') && location.hash.includes('d={design}')"));
+    browser.wait(&format!("location.hash.includes('p={design}@B') && location.hash.includes('d={design}')"));
     let hash = browser.text("location.hash");
     drop(browser);
     let mut browser = Browser::open(&page, &hash);
     browser.wait(&format!("document.querySelector('#card-title')?.textContent === 'Design {design}'"));
-    assert_eq!(browser.evaluate("beltspace.page.pins().map((it) => it.design)"), serde_json::json!([design]));
+    assert_eq!(browser.evaluate("beltspace.page.pins().flatMap((it) => [it.design, it.letter])"), serde_json::json!([design, "B"]));
     browser.evaluate("beltspace.closeCard()");
     browser.click_on(".pins .pin-name");
     assert!(browser.text("document.querySelector('#card').innerText").contains("Drawn to scale"));

@@ -63,6 +63,13 @@ pub enum GivenRange {
     Fixed(Axis),
     /// An end of what an input is in the scenarios.
     End(ScenarioEnd),
+    /// The scenarios with one of the words of an axis alone.
+    Alone {
+        /// Is the input uncertain? Else it is one of the operating cases.
+        is_uncertain: bool,
+        /// Number of the axis among those of its kind.
+        axis: usize,
+    },
     /// The mean of a distribution: all draws move with it.
     Mean {
         /// Number of the input among those that are drawn.
@@ -112,6 +119,7 @@ pub fn around_with(
     let given = given.iter().map(|it| match it {
         GivenRange::Fixed(axis) => line.slice(axis, most),
         GivenRange::End(end) => line.scenario_end(*end, most),
+        GivenRange::Alone { is_uncertain, axis } => line.alone((*is_uncertain, *axis), most),
         GivenRange::Mean { drawn, from, to } => line.mean(*drawn, (*from, *to), most),
     });
     let slices = own.chain(given).collect::<Result<Vec<_>>>()?;
@@ -223,24 +231,19 @@ impl DesignLine<'_> {
     /// Over an end of what an input is in the scenarios. These are others at each place, so that each is a study of its own.
     fn scenario_end(&self, end: ScenarioEnd, most: u64) -> Result<Slice> {
         let study = self.study;
-        let axes = if end.is_uncertain { &study.uncertainty[..] } else { study.operating() };
-        let axis = &axes[end.axis];
+        let which = (end.is_uncertain, end.axis);
+        let axis = &self.scenario_axes(end.is_uncertain)[end.axis];
+        let described = &study.model.inputs[end.input];
         let column = axis.inputs().iter().position(|it| *it == end.input).unwrap_or(0);
         let (least, largest) = axis.ends(column);
         let own = if end.is_largest { largest } else { least };
-        let other = |alone: &Study, value: f64| {
-            let mut others = axes.to_vec();
-            others[end.axis] = with_end(axis, column, own, value);
-            if end.is_uncertain {
-                return Ok(Study { uncertainty: others, ..alone.clone() });
-            }
-            alone.with_operating(others, &self.drawn).map_err(Error::Request)
+        let other = |alone: &Study, value: f64| self.with_axis(alone, which, with_end(axis, column, described.integer, own, value));
+        let places = if described.integer {
+            AxisPlaces::new(&Levels::Step { from: end.from, step: 1.0, count: (end.to - end.from) as u64 + 1, log: false }, own)
+        } else {
+            AxisPlaces::Between { low: end.from, high: end.to, log: axis.is_logarithmic(), own }
         };
-        let places = AxisPlaces::Between { low: end.from, high: end.to, log: axis.is_logarithmic(), own };
-        let (values, mut rows) = self.of_studies(&places, own, most, other)?;
-        // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
-        rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
-        let described = &study.model.inputs[end.input];
+        let (values, rows) = self.of_scenarios(&places, own, most, other)?;
         let which = match end.is_largest {
             _ if least == largest => "",
             true => ", the largest",
@@ -248,6 +251,52 @@ impl DesignLine<'_> {
         };
         let (name, unit) = (format!("{}{which}", described.name), described.unit.symbol.to_owned());
         Ok(Slice { name, unit, own, values, words: None, rows })
+    }
+
+    /// The scenarios with one of the words of an axis alone, beside all of them.
+    fn alone(&self, which: (bool, usize), most: u64) -> Result<Slice> {
+        let axis = &self.scenario_axes(which.0)[which.1];
+        let input = axis.inputs()[0];
+        let described = &self.study.model.inputs[input];
+        let word = |at: f64| axis.value(0, at as u64 - 1);
+        let other = |alone: &Study, at: f64| match at {
+            0.0 => Ok(alone.clone()),
+            _ => self.with_axis(alone, which, Axis::Single { input, levels: Levels::List(vec![word(at)]) }),
+        };
+        let places = AxisPlaces::new(&Levels::Step { from: 0.0, step: 1.0, count: axis.count() + 1, log: false }, 0.0);
+        let (values, rows) = self.of_scenarios(&places, 0.0, most, other)?;
+        let called = |&at: &f64| if at == 0.0 { "all of them".to_owned() } else { format!("{} alone", written(described, word(at))) };
+        let words = Some(values.iter().map(called).collect());
+        Ok(Slice { name: described.name.clone(), unit: String::new(), own: 0.0, values, words, rows })
+    }
+
+    /// The axes of uncertain inputs, or of loads.
+    fn scenario_axes(&self, is_uncertain: bool) -> &[Axis] {
+        if is_uncertain { &self.study.uncertainty } else { self.study.operating() }
+    }
+
+    /// The study of one design with another axis of scenarios.
+    fn with_axis(&self, alone: &Study, (is_uncertain, number): (bool, usize), axis: Axis) -> Result<Study> {
+        let mut axes = self.scenario_axes(is_uncertain).to_vec();
+        axes[number] = axis;
+        if is_uncertain {
+            return Ok(Study { uncertainty: axes, ..alone.clone() });
+        }
+        alone.with_operating(axes, &self.drawn).map_err(Error::Request)
+    }
+
+    /// As [`DesignLine::of_studies`], of studies with other scenarios: those of one number are others at each place, so whether another one
+    /// becomes the worst cannot be told by them.
+    fn of_scenarios(
+        &self,
+        places: &AxisPlaces,
+        own: f64,
+        most: u64,
+        other: impl Fn(&Study, f64) -> Result<Study> + Sync,
+    ) -> Result<(Vec<f64>, Vec<Row>)> {
+        let (values, mut rows) = self.of_studies(places, own, most, other)?;
+        rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
+        Ok((values, rows))
     }
 
     /// Over the mean of a distribution.
@@ -295,8 +344,8 @@ impl DesignLine<'_> {
 }
 
 /// An axis with another end of one of its inputs: what was there goes to `value`, and between the ends of a range as many levels as before
-/// lie.
-fn with_end(axis: &Axis, column: usize, own: f64, value: f64) -> Axis {
+/// lie, of whole numbers as many as its steps reach.
+fn with_end(axis: &Axis, column: usize, is_whole: bool, own: f64, value: f64) -> Axis {
     // As the study has it, its levels are those of its steps, to the last bit.
     if value == own {
         return axis.clone();
@@ -309,11 +358,18 @@ fn with_end(axis: &Axis, column: usize, own: f64, value: f64) -> Axis {
             return Axis::Joint { inputs: inputs.clone(), rows: rows.iter().map(other).collect() };
         }
     };
+    let ends = || (moved(levels.value(0)), moved(levels.value(levels.count() - 1)));
     let levels = match levels {
+        _ if is_whole && levels.count() > 1 && !matches!(levels, Levels::List(_)) => {
+            let ((from, to), step) = (ends(), levels.value(1) - levels.value(0));
+            let inside = (0..).map(|at| from + f64::from(at) * step).take_while(|it| (to - it) * step > 0.0);
+            Levels::List(inside.chain([to]).collect())
+        }
         Levels::List(values) => Levels::List(values.iter().map(|&it| moved(it)).collect()),
         Levels::Even { from, to, count, log } => Levels::Even { from: moved(*from), to: moved(*to), count: *count, log: *log },
         Levels::Step { count, log, .. } => {
-            Levels::Even { from: moved(levels.value(0)), to: moved(levels.value(count - 1)), count: *count, log: *log }
+            let (from, to) = ends();
+            Levels::Even { from, to, count: *count, log: *log }
         }
         Levels::Continuous { .. } => levels.clone(),
     };

@@ -2,6 +2,7 @@
 
 use super::places::edges;
 use super::*;
+use crate::live::given::given_ranges;
 use crate::study::study_of;
 
 /// A push belt whose thickness has many more levels than a slice has places.
@@ -230,4 +231,82 @@ fn a_scenario_that_is_the_worst_by_rounding_only_is_no_other_one() {
     certify::keep_scenarios(&plan, &columns, &mut rows, &control);
     let scenarios: Vec<u64> = rows.iter().map(|row| row.columns[0].scenario).collect();
     assert_eq!(scenarios, [worst, worst, of_other_ratio]);
+}
+
+/// A study of the pulley of a belt with this operation, and with these fixed inputs.
+fn pulley(operation: &str, fixed: &str) -> (Plan, String) {
+    let text = format!(
+        "model = \"pulley-load\"\n[design]\nmean_radius_mm = [50, 60]\n[operation]\n{operation}[fixed]\n{fixed}\
+         [constraints]\nfriction_margin = {{ min = 0 }}\n[objectives]\nresultant_force_N = \"min\"\ntight_end_flank_force_N_per_mm = \"min\"\n"
+    );
+    (Plan::new(crate::study::Study::parse(&text).unwrap_or_else(|errors| panic!("{errors}"))), text)
+}
+
+/// The values of a design's columns in the first of a study, by their bits.
+fn bits_of(plan: &Plan, columns: &[Column]) -> Vec<Option<u64>> {
+    let row = &certify::rows(plan, columns, &[0], 1, &Control::default()).expect("a row")[0];
+    row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect()
+}
+
+#[test]
+fn each_word_of_a_load_is_looked_at_alone_and_a_fixed_word_beside_the_others() {
+    let (plan, text) = pulley("tensioning = [\"slack\", \"fixed-centres\"]\n", "installed_tension_N = 500\nslack_tension_N = 500\n");
+    let given = given_ranges(&plan.study, &text).said;
+    assert!(given.iter().any(|it| matches!(it, GivenRange::Alone { is_uncertain: false, axis: 0 })), "{given:?}");
+    let (columns, slices) = around_with(&plan, 0, PLACES, &given, 1, &Control::default()).expect("slices");
+    let slice = slices.iter().find(|it| it.name == "tensioning").expect("it is a load");
+    assert_eq!(slice.words.as_deref(), Some(&["all of them".to_owned(), "slack alone".to_owned(), "fixed-centres alone".to_owned()][..]));
+    assert_eq!((slice.own, &slice.values[..]), (0.0, &[0.0, 1.0, 2.0][..]));
+    let bits = |row: &Row| row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect::<Vec<_>>();
+    assert_eq!(bits(&slice.rows[0]), bits_of(&plan, &columns));
+    let mut differing = std::collections::BTreeSet::new();
+    for (word, row) in ["slack", "fixed-centres"].into_iter().zip(&slice.rows[1..]) {
+        let (alone, text) = pulley("", &format!("tensioning = \"{word}\"\ninstalled_tension_N = 500\nslack_tension_N = 500\n"));
+        assert_eq!(bits(row), bits_of(&alone, &columns), "{word}");
+        differing.insert(bits(row));
+        // The same word where the study fixes it.
+        let given = given_ranges(&alone.study, &text).said;
+        let (_, slices) = around_with(&alone, 0, PLACES, &given, 1, &Control::default()).expect("slices");
+        let fixed = slices.iter().find(|it| it.name == "tensioning").expect("it is fixed");
+        assert_eq!(fixed.words.as_deref(), Some(&["slack".to_owned(), "fixed-centres".to_owned()][..]));
+        assert_eq!(fixed.own, if word == "slack" { 0.0 } else { 1.0 });
+        assert_eq!(fixed.rows.iter().map(bits).collect::<Vec<_>>(), slice.rows[1..].iter().map(bits).collect::<Vec<_>>());
+    }
+    assert_eq!(differing.len(), 2, "the words make a difference");
+}
+
+#[test]
+fn the_ends_of_a_load_in_whole_numbers_are_whole_and_its_levels_too() {
+    for (operation, least, expected) in [
+        ("groove_count = { from = 2, to = 6, step = 2 }\n", 2.0, "groove_count = [3, 5, 6]\n"),
+        ("groove_count = [2, 4, 6]\n", 2.0, "groove_count = [3, 4, 6]\n"),
+    ] {
+        let (plan, text) = pulley(operation, "");
+        let given = given_ranges(&plan.study, &text).said;
+        let (columns, slices) = around_with(&plan, 0, PLACES, &given, 1, &Control::default()).expect("slices");
+        let slice = slices.iter().find(|it| it.name == "groove_count, the least").expect("it is a load");
+        assert!(slice.own == least && slice.values.iter().all(|it| it.fract() == 0.0), "{slice:?}");
+        let bits = |at: f64| {
+            let row = &slice.rows[slice.values.iter().position(|it| *it == at).expect("a whole number beside it")];
+            row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect::<Vec<_>>()
+        };
+        assert_eq!(bits(3.0), bits_of(&pulley(expected, "").0, &columns), "{operation}");
+        assert_ne!(bits(3.0), bits(1.0));
+        assert_eq!(bits(2.0), bits_of(&plan, &columns));
+    }
+}
+
+#[test]
+fn instead_of_a_word_some_numbers_are_looked_at() {
+    let text =
+        "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[fixed]\ntraction = \"limit\"\n[objectives]\naxial_force_N = \"min\"\n";
+    let plan = Plan::new(crate::study::Study::parse(text).unwrap_or_else(|errors| panic!("{errors}")));
+    let given = given_ranges(&plan.study, text).said;
+    let (_, slices) = around_with(&plan, 0, PLACES, &given, 1, &Control::default()).expect("slices");
+    let slice = slices.iter().find(|it| it.name == "traction").expect("it is fixed");
+    let words = slice.words.as_ref().expect("one of them is a word");
+    assert!(
+        slice.own == 0.0 && words[0] == "limit" && words.len() > 5 && words[1..].iter().all(|it| it.parse::<f64>().is_ok()),
+        "{words:?}"
+    );
 }

@@ -1,6 +1,6 @@
 // The state of the page, written after "#" in the address, so that a view can be bookmarked or sent to somebody.
 //   c=columns of the matrix   pc=axes in order   inv=reversed axes      col=colour column
-//   p=pinned designs                            s=changes of a live study
+//   p=pinned designs, @letter behind some         s=changes of a live study
 //   w=objective:weight,...   a=objective:wished value,...              wn=weight sets that places are tried with
 //   b=axis:low..high,...      r=x*y:low..high*low..high,...             d=open design   t=light|dark
 {

@@ -55,18 +55,20 @@
     page.events.call("pins");
   };
 
-  // In the address by their designs; those of other changes with these behind a tilde.
+  // In the address by their designs, with the letter where one before it is missing; those of other changes with these behind a tilde.
+  const letterBehind = (pin, i) => (pin.letter === LETTERS[i] ? "" : `@${pin.letter}`);
   const changesOf = (pin) => (isOf(pin, askedSet()) ? "" : `~${pin.set.map(encodeURIComponent).join(";")}`);
-  page.pinsText = () => [...pins, ...awaited].map((pin) => `${pin.design}${changesOf(pin)}`).join(",");
+  page.pinsText = () => [...pins, ...awaited].map((pin, i) => `${pin.design}${letterBehind(pin, i)}${changesOf(pin)}`).join(",");
   page.readPins = (text) => {
     pins = [];
     // The engine knows every design.
     const isHere = ({ design, set }) => Boolean(page.askPin) || (isOf({ set }, askedSet()) && page.front && (page.rowOf(design) >= 0 || page.knownOf(design)));
-    const given = [...new Set((text || "").split(",").filter(Boolean))].map((entry) => {
-      const [design, changes] = entry.split("~");
-      return { design, set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };
+    const given = [...new Set((text || "").split(",").filter(Boolean))].map((entry, i) => {
+      const [named, changes] = entry.split("~");
+      const [design, letter] = named.split("@");
+      return { design, letter: LETTERS.includes(letter) ? letter : (LETTERS[i] ?? null), set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };
     });
-    awaited = given.filter(isHere).slice(0, MOST).map((pin, i) => ({ ...pin, letter: LETTERS[i] }));
+    awaited = given.filter(isHere).slice(0, MOST);
     adoptAwaited();
     page.events.call("pins");
     if (page.askPin) awaited.filter((pin) => !isOf(pin, askedSet())).forEach(askOther);
