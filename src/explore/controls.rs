@@ -17,7 +17,7 @@ const SEEN: u64 = 32;
 /// What a study file calls the share of draws that hold.
 const YIELD: &str = "yield";
 /// Most values of a list, and of rows, that can be changed.
-const MOST_VALUES: usize = 100;
+const MOST_VALUES: usize = 1000;
 const MOST_CELLS: usize = 400;
 
 /// The controls of a study as its file has it.

@@ -157,6 +157,7 @@ fn while_nothing_comes_the_line_says_that_what_is_shown_is_older() {
 #[ignore = "needs the browser of the Debian package chromium"]
 fn words_and_long_lists_are_chosen_from() {
     let text = SMALL.replace("torque_Nm = [50, 150]", "torque_Nm = [50, 60, 70, 80, 90, 100, 110, 120, 150]");
+    let text = text.replace("{ from = 0.30, to = 0.50, count = 5 }", "[\"limit\", 0.3, 0.4]");
     let (folder, file) = study_file(&text);
     let explored = Explored::new(&file, &[]);
     let mut browser = open(&explored);
@@ -164,6 +165,13 @@ fn words_and_long_lists_are_chosen_from() {
     assert!(told.starts_with('|'), "{told}");
     answered(&mut browser);
     assert_eq!(changes(&mut browser), ["operation.torque_Nm=[50, 100, 140]"]);
+    assert_eq!(differs(&mut browser, &text, folder.path()), None);
+    // Levels of which some are words.
+    let told = typed(&mut browser, "design.traction", "0,35 limit nowhere");
+    assert!(told.contains("Write numbers, or limit with a space between them"), "{told}");
+    assert_eq!(typed(&mut browser, "design.traction", "0,35 limit"), "|0.35, limit");
+    answered(&mut browser);
+    assert_eq!(changes(&mut browser), ["operation.torque_Nm=[50, 100, 140]", "design.traction=[0.35, \"limit\"]"]);
     assert_eq!(differs(&mut browser, &text, folder.path()), None);
     // Words of a pulley that are levels, and a word in place of a number.
     let text = "model = \"pulley-load\"\n[design]\nwidth_known = [1]\n";

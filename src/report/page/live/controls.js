@@ -130,8 +130,7 @@
     if (form === "rows") return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${page.count(control.rows)} rows, as the file has them`)));
     if (form === "list") {
       if (control.values.every((value) => control.words.includes(value))) return page.wordsControl(control);
-      if (control.values.some((value) => typeof value === "string")) return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${control.values.join(", ")}`)));
-      if (control.values.length > MOST_FIELDS) return page.listControl(control);
+      if (control.values.length > MOST_FIELDS || control.values.some((value) => typeof value === "string")) return page.listControl(control);
       // What stands in the address may be no list.
       const given = (text) => {
         try {

@@ -38,23 +38,25 @@
     return page.element("details", { class: "block", "data-control": control.part, open: control.rows.length < 8 }, page.element("summary", {}, page.breakable(control.name), page.element("span", { class: "muted" }, ` ${page.count(control.rows.length)} rows`)), box);
   };
 
-  // Levels that are written one after the other.
+  // Levels that are written one after the other: numbers, and words where the input takes some.
   page.listControl = (control) => {
-    const { part, values } = control;
+    const { part, values, words } = control;
     const original = values.join(", ");
     const read = () => {
       const list = page.changedValue(part);
-      return list === undefined ? original : list.replace(/^\[|\]$/g, "");
+      return list === undefined ? original : list.replace(/^\[|\]$|"/g, "");
     };
+    const level = (text) => (words.includes(text) ? text : page.numberOf(text));
+    const also = words.length ? `, or ${words.join(", ")}` : "";
     const field = page.element("input", { type: "text", class: "list", autocomplete: "off", spellcheck: "false", "data-part": part, "aria-label": `${control.name}: levels` });
     field.addEventListener("change", (event) => {
       page.eventAt = event.timeStamp;
-      const list = field.value.split(/[;\s]+|,(?=\s|$)|,(?!.*[;\s])/).filter(Boolean).map(page.numberOf);
-      const isRight = list.length > 0 && list.every(Number.isFinite);
-      field.setCustomValidity(isRight ? "" : "Write numbers with a space between them, such as 50 100 150");
+      const list = field.value.split(/[;\s]+|,(?=\s|$)|,(?!.*[;\s])/).filter(Boolean).map(level);
+      const isRight = list.length > 0 && list.every((it) => typeof it === "string" || Number.isFinite(it));
+      field.setCustomValidity(isRight ? "" : `Write numbers${also} with a space between them, such as 50 100 150`);
       if (!isRight) return field.reportValidity();
       delete field.dataset.typed;
-      return page.change({ [part]: list.join(", ") === original ? null : `[${list.join(", ")}]` });
+      return page.change({ [part]: list.join(", ") === original ? null : `[${list.map((it) => JSON.stringify(it)).join(", ")}]` });
     });
     field.addEventListener("input", () => (field.dataset.typed = "1"));
     const sync = () => {
