@@ -28,7 +28,7 @@ const PARTS: &str = "application/octet-stream";
 /// Stands before a command that needs the study as a file.
 const NO_COMMAND: &str = "# no options say all of these changes; save the study as study.toml, then\n";
 const MAPS_LEFT_OUT: &str =
-    "The maps of the study are left out: one of them shows an objective that does not count now, or has too many cells.";
+    "The command and the study to save are without maps: one of them shows an objective that does not count now, or has too many cells.";
 /// Seconds of a thread that slices over what the study gives may take.
 const MOST_SECONDS: f64 = 2.0;
 /// Most changes of a study.

@@ -1,7 +1,7 @@
 //! The pictures of an analysis.
 
 use super::results::{Estimate, InfluenceMethod, InfluenceReport, InputReport, QuantityReport, TornadoReport};
-use crate::pictures::{BarGroup, PlotBar, PlotQuantity, Swing, bars, tornado};
+use crate::pictures::{BarGroup, PlotBar, PlotQuantity, Swing, bars, spaced, tornado};
 use crate::study::InfluenceOver;
 
 /// Names and texts of the pictures: one of the shares of each quantity that has some, and a tornado.
@@ -37,7 +37,7 @@ fn shares(report: &InfluenceReport, quantity: &QuantityReport) -> Option<String>
         ("Shapley, designs that hold", |it| it.within),
     ];
     let shown: Vec<&ShareOf> = kinds.iter().filter(|(_, of)| quantity.inputs.iter().any(|input| of(input).is_some())).collect();
-    let what = quantity.asked.name.replace('_', " ");
+    let what = spaced(&quantity.asked.name);
     let title = format!("{}, {what}", subject(report));
     if shown.is_empty() {
         // Many inputs without shares: their effects instead.

@@ -152,7 +152,7 @@ impl PlotQuantity {
             .and_then(|stem| stem.strip_suffix('_'))
             .filter(|stem| !suffix.is_empty() && !stem.is_empty())
             .unwrap_or(&self.name);
-        words::clean(&stem.replace('_', " "))
+        words::clean(&spaced(stem))
     }
 }
 
@@ -174,6 +174,22 @@ impl PlotGoal {
     }
 }
 
+/// The words of a name, with the point of a quantile: `draw q99.9` of `draw_q99_9`.
+pub(crate) fn spaced(name: &str) -> String {
+    let is_number = |word: &str| !word.is_empty() && word.bytes().all(|it| it.is_ascii_digit());
+    let mut words = String::new();
+    let mut last = "";
+    for word in name.split('_') {
+        let is_fraction = last.strip_prefix('q').is_some_and(is_number) && is_number(word);
+        if !words.is_empty() {
+            words.push(if is_fraction { '.' } else { ' ' });
+        }
+        words.push_str(word);
+        last = word;
+    }
+    words
+}
+
 /// A unit as names spell it, so that `N/mm` strips `_N_per_mm` and `°` strips `_deg`.
 fn unit_as_suffix(unit: &str) -> String {
     unit.replace('/', "_per_").replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('°', "deg").replace([' ', '·'], "")
@@ -193,6 +209,8 @@ mod tests {
             ("driver_wrap_deg", "deg", "driver wrap [deg]"),
             ("torque_Nm", "N m", "torque [N m]"),
             ("stress_margin", "", "stress margin"),
+            ("slip_margin_draw_q99_9", "", "slip margin draw q99.9"),
+            ("force_draw_q99_N", "N", "force draw q99 [N]"),
             ("N", "N", "N [N]"),
             ("", "", ""),
         ] {

@@ -91,7 +91,7 @@ fn over(input: &Input, axis: &Axis, column: usize) -> String {
 pub fn drawn(study: &Study) -> Value {
     let Some(probability) = study.probability.as_deref() else { return Value::Null };
     let drive = &probability.drive;
-    let constraint = |it: &Constraint| json!({ "of": it.name(&drive.model), "bounds": it.in_words() });
+    let constraint = |it: &Constraint| json!({ "of": it.name(&drive.model), "bounds": it.in_words(), "unit": drive.unit_of(it) });
     json!({
         "draws": probability.draws, "confirm": probability.confirm,
         "cases": drive.operation.iter().map(Axis::count).product::<u64>(),

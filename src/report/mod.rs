@@ -191,7 +191,8 @@ fn objectives_json(study: &Study, columns: &[usize]) -> Value {
 /// The constraints with the positions of their columns, if they have some, and their bounds.
 fn constraints_json(study: &Study, columns: &[usize]) -> Value {
     let each = study.constraints.iter().enumerate().map(|(at, it)| {
-        let mut constraint = json!({ "of": it.name(&study.model), "column": columns.get(at), "bounds": it.in_words() });
+        let unit = study.unit_over(it.quantity, it.over);
+        let mut constraint = json!({ "of": it.name(&study.model), "column": columns.get(at), "bounds": it.in_words(), "unit": unit });
         for (bound, inclusive, exclusive) in [(it.low, "min", "above"), (it.high, "max", "below")] {
             if let Some((bound, excluded)) = bound {
                 constraint[if excluded { exclusive } else { inclusive }] = number(bound);

@@ -110,7 +110,7 @@ fn what_people_type_is_taken_as_it_is_meant_or_refused() {
         assert_eq!(changes(&mut browser), [wanted]);
     }
     // Another page at this address has nothing to undo.
-    browser.wait("location.hash.includes('slip_margin') && !location.hash.includes('strength')");
+    browser.wait("location.hash.includes('slip_margin.min') && !location.hash.includes('strength')");
     let address = browser.evaluate("location.href");
     drop(browser);
     let mut browser =

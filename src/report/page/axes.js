@@ -46,19 +46,23 @@
     if (lines.join(" ") !== whole) text.append("title").text(whole);
   };
 
-  // Numbers below an axis of so many pixels: those at its ends stay within it, and one that would touch the one before is left out.
+  // Numbers below an axis of so many pixels: those at its ends stay within it, and one that would touch the one before is left out. Where
+  // that leaves one only, the last one stands beside it if there is room. Returns how many there are.
   page.keepTicksApart = (axis, length) => {
-    let taken = -Infinity;
-    axis.selectAll(".tick").each(function () {
-      const text = d3.select(this).select("text");
-      const at = Number(/[-\d.]+/.exec(this.getAttribute("transform"))[0]);
+    const ticks = axis.selectAll(".tick").nodes().map((tick) => {
+      const text = d3.select(tick).select("text");
+      const at = Number(/[-\d.]+/.exec(tick.getAttribute("transform"))[0]);
       const wide = widthOf(text.text(), 12);
       const anchor = at < wide / 2 - 4 ? "start" : at > length - wide / 2 + 4 ? "end" : "middle";
       const left = at - wide * { start: 0, middle: 0.5, end: 1 }[anchor];
       text.attr("text-anchor", anchor);
-      if (left < taken + 5) text.text("");
-      else taken = left + wide;
+      return { text, left, right: left + wide };
     });
+    const apart = (kept, tick) => (kept.length && tick.left < kept[kept.length - 1].right + 5 ? kept : [...kept, tick]);
+    let kept = ticks.reduce(apart, []);
+    if (kept.length === 1 && ticks.length > 1) kept = [ticks[0], ticks[ticks.length - 1]].reduce(apart, []);
+    ticks.filter((tick) => !kept.includes(tick)).forEach(({ text }) => text.text(""));
+    return kept.length;
   };
 
   // On an axis of words every word has a tick.
@@ -69,9 +73,10 @@
     // Around a value that stands alone there is nothing to measure; where there is a range, its ticks are those of any other axis.
     const [from, to] = scale.domain();
     if (column.low === column.high && to - from <= 0.2 * (Math.abs(column.low) || 10)) return axis.tickValues([column.low]).tickFormat(page.exactly);
-    // A whole number has no digits after its point, however few of them there are.
-    const ticks = scale.ticks(count);
-    const isFine = column.whole && ticks.some((tick) => !Number.isInteger(tick));
-    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(isFine ? page.count : page.tick(scale, count));
+    // A whole number has no digits after its point, however few of them there are. With fewer than two numbers an axis tells nothing.
+    const ticksOf = (most) => scale.ticks(most).filter((tick) => !column.whole || Number.isInteger(tick));
+    const most = d3.range(count, count + 10).find((it) => ticksOf(it).length > 1) ?? count;
+    const isFine = column.whole && scale.ticks(most).some((tick) => !Number.isInteger(tick));
+    return axis.tickValues(ticksOf(most)).tickFormat(isFine ? page.count : page.tick(scale, most));
   };
 }

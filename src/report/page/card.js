@@ -246,6 +246,13 @@
     if (fresh) card.scrollTop = 0;
     page.events.call("card");
     if (fresh) layoutIfNarrower(width);
+    if (fresh) showViews(card);
+  };
+  // Below the plots it covers them where the page has not been scrolled to them.
+  const showViews = (card) => {
+    const [views, place] = [page.byId("views").getBoundingClientRect(), card.getBoundingClientRect()];
+    const isBelow = place.left < views.left && place.top > 0 && getComputedStyle(card).position === "fixed";
+    if (isBelow && views.top > place.top - Math.min(views.height, 300)) page.byId("views").scrollIntoView({ block: "start" });
   };
 
   page.closeCard = () => {

@@ -53,7 +53,9 @@
     context.putImageData(image, 0, 0);
   };
 
-  const contourColours = ["#d55e00", "#000000", "#cc79a7", "#0072b2"];
+  // On white; so is the casing of each line, which keeps it apart from the colours of the cells.
+  const contourColours = ["#d55e00", "#000000", "#c46a9c", "#0072b2"];
+  page.contourColours = contourColours;
 
   const drawContours = (svg, map, x, y) => {
     const labels = []; // where the labels are, so that none covers another
@@ -64,7 +66,9 @@
       let longest = null;
       for (const line of contour.lines) {
         const points = d3.range(0, line.length - 1, 2).map((i) => [x.scale(line[i]), y.scale(line[i + 1])]);
-        group.append("path").attr("d", d3.line()(points));
+        const path = d3.line()(points);
+        group.append("path").attr("class", "casing").attr("d", path);
+        group.append("path").attr("d", path);
         if (!longest || points.length > longest.length) longest = points;
       }
       const place = longest && [0.5, 0.35, 0.65, 0.2, 0.8].map((part) => longest[Math.floor(longest.length * part)]).find(free);

@@ -6,6 +6,7 @@
   const TITLES = BOTTOM + 26; // where they have three lines
   const TOP = 8;
   const LEAST = 76; // px of a cell
+  const LEAST_ON_PAPER = 64;
   let cells = []; // { x, y, left, top, xs, ys, image, base, brush, group }
   let canvas, svg, size, ratio, disc, dot;
   let crowd = null; // of the cell that is drawn
@@ -20,7 +21,8 @@
     if (page.printing) {
       const around = TOP + TITLES + GAP * across;
       const left = page.sheetLeft(page.byId("splom"));
-      return Math.max(LEAST, Math.min(room, ((left < across * LEAST + around ? 490 : Math.min(490, left)) - around) / across));
+      const fits = left >= across * LEAST_ON_PAPER + around;
+      return Math.max(LEAST_ON_PAPER, Math.min(room, ((fits ? Math.min(490, left) : 490) - around) / across));
     }
     return Math.max(LEAST, Math.min(across === 2 ? 330 : 264, room));
   };
@@ -161,9 +163,11 @@
   const drawAxes = (cell) => {
     const ticks = Math.max(2, Math.floor(size / 62));
     if (cell.xAxis) {
-      cell.xAxis.call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, ticks));
+      const draw = (count) => cell.xAxis.call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, count));
+      draw(ticks);
       if (cell.x.words) page.tiltWords(cell.xAxis, size / cell.x.words.length);
-      else page.keepTicksApart(cell.xAxis, size);
+      // One number is no scale: of more there are two that have room.
+      else for (let count = ticks; page.keepTicksApart(cell.xAxis, size) < 2 && count < ticks + 6; count += 2) draw(count + 2);
     }
     if (cell.yAxis) {
       cell.yAxis.call(page.axisOf(d3.axisLeft, cell.y, cell.yScale, ticks));

@@ -40,10 +40,10 @@
   // What is asked: bounds, and what the drive must survive.
   const question = (withGoals) => {
     const { constraints, inputs, drawn, objectives: asked } = page.data;
-    const bound = ({ of, bounds }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, page.grouped(bounds)));
+    const bound = ({ of, bounds, unit }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, page.grouped(bounds) + (unit ? ` ${page.unit(unit)}` : "")));
     const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", { title: input.drawn }, `${page.grouped(input.over)}${input.unit && !input.over.startsWith("times") ? ` ${page.unit(input.unit)}` : ""}`));
     const varied = (inputs || []).filter((input) => ["operation", "uncertainty"].includes(input.role));
-    const body = (title, lines) => (lines.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 2, scope: "rowgroup" }, title)), lines) : null);
+    const body = (title, lines) => (lines.length ? page.element("table", { class: "question" }, page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 2, scope: "rowgroup" }, title)), lines)) : null);
     const laws = (inputs || []).filter((input) => input.role === "drawn");
     const goal = ({ of, goal }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, goal === "min" ? "as low as possible" : "as high as possible"));
     const parts = [
@@ -53,7 +53,7 @@
       body(drawn ? "in every operating case of" : "in every scenario of", varied.map(over)),
       body("drawn from a distribution", laws.map(over)),
     ].filter(Boolean);
-    return parts.length ? page.element("table", { class: "question", "data-testid": "question" }, parts) : null;
+    return parts.length ? page.element("div", { class: "questions", "data-testid": "question" }, parts) : null;
   };
 
   const goals = () => {

@@ -127,7 +127,14 @@
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${left},0)`).call(d3.axisLeft(y).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(ofY));
     // Where the design would be infeasible.
     const half = (i) => (i < 0 ? x.domain()[0] : i >= slice.at.length - 1 ? x.domain()[1] : (slice.at[i] + slice.at[i + 1]) / 2);
-    slice.feasible.forEach((is, i) => is || svg.append("rect").attr("class", "no-go").attr("x", x(half(i - 1))).attr("width", Math.max(0, x(half(i)) - x(half(i - 1)))).attr("y", PAD.top).attr("height", HEIGHT - PAD.top - PAD.bottom));
+    slice.feasible.forEach((is, first) => {
+      if (is || slice.feasible[first - 1] === false) return;
+      const next = slice.feasible.indexOf(true, first);
+      const [from, to] = [half(first - 1), half(next < 0 ? slice.at.length - 1 : next - 1)].map(x);
+      const band = (name, y, height) => svg.append("rect").attr("class", name).attr("x", from).attr("width", Math.max(0, to - from)).attr("y", y).attr("height", height);
+      band("no-go", PAD.top, HEIGHT - PAD.top - PAD.bottom);
+      band("no-go-line", HEIGHT - PAD.bottom - 3, 3);
+    });
     for (const limit of limits) {
       const isAbove = limit > y.domain()[1];
       if (!isAbove && limit >= y.domain()[0]) svg.append("path").attr("class", "limit").attr("d", `M${left},${y(limit)}H${WIDTH - PAD.right}`);
@@ -165,7 +172,7 @@
     };
     const leftOut = defaults > 0 ? page.element("details", { class: "slice-group", open: isUnfolded, toggle: unfold }, page.element("summary", { "data-focus": "defaults" }, `With other values of what the study leaves out or takes from a preset (${page.count(defaults)})`), isUnfolded ? group(ofDefaults) : null) : [];
     const list = page.element("div", { class: "slices", "data-testid": "slices" }, group(0, ofGiven), saidOtherwise, leftOut);
-    const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst. An arrow: a limit beyond the chart.");
+    const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded above a thick line: infeasible. A tick on a line: another scenario becomes the worst. An arrow: a limit beyond the chart.");
     const note = isLeftOut ? page.element("p", { class: "hint", "data-testid": "given-left-out" }, "Other loads, uncertainties and fixed values are left out: they would take too long, or too much of this page.") : "";
     page.keepFocus(box, () => box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list, note));
   };

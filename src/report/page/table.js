@@ -58,8 +58,10 @@
       const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index ? [page.letterOf(row) ? page.element("span", { class: "pin-letter" }, page.letterOf(row)) : null, row === knee ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : null].filter(Boolean) : []);
       return page.element("tr", { "data-row": row, "data-focus": `row ${page.designOf(row)}`, class: row === knee ? "is-knee" : "", tabindex: -1, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
     };
-    page.keepFocus(body, () => body.replaceChildren(...rows.slice(0, MOST).map(line)));
-    const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown; the CSV has them all.` : "");
+    const marked = new Set([...page.pins().filter(page.isOfShown).map((pin) => page.rowOf(pin.design)), page.state.card]);
+    const beyond = rows.length > MOST ? rows.slice(MOST).filter((row) => marked.has(row)) : [];
+    page.keepFocus(body, () => body.replaceChildren(...rows.slice(0, MOST).concat(beyond).map(line)));
+    const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown${beyond.length ? ", and what is pinned or open" : ""}; the CSV has them all.` : "");
     const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
     note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
     page.byId("csv").disabled = !rows.length;
@@ -102,6 +104,10 @@
     page.events.on("choice.table", later);
     page.events.on("pins.rows", later);
     page.events.on("current.table", markCurrent);
-    page.events.on("card.table", markCurrent);
+    page.events.on("card.table", () => {
+      markCurrent();
+      const { card } = page.state;
+      if (card !== null && page.mask[card] && !body.querySelector(`[data-row="${card}"]`)) later();
+    });
   };
 }

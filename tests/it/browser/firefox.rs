@@ -36,9 +36,11 @@ impl Firefox {
             "() => document.addEventListener('securitypolicyviolation', (event) => console.error(`blocked: ${event.blockedURI}`))";
         wire.call("script.addPreloadScript", &json!({ "functionDeclaration": blocked }));
         wire.call("session.subscribe", &json!({ "events": ["log.entryAdded", "network.beforeRequestSent"] }));
-        // A tab of its own: that of the start may still be loading, and then a page that it is told to open never counts as loaded.
-        let context = wire.call("browsingContext.create", &json!({ "type": "tab" }))["context"].clone();
-        (process, Box::new(Self { wire, context }))
+        let context = wire.call("browsingContext.getTree", &json!({}))["contexts"][0]["context"].clone();
+        let mut own = Self { wire, context };
+        // While the page of the start is loading, one that it is told to open may never count as loaded.
+        wait_for("firefox to show its first page", || own.evaluate("document.readyState").ok().filter(|it| it == "complete"));
+        (process, Box::new(own))
     }
 
     fn act(&mut self, kind: &str, actions: &Value) {
