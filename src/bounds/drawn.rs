@@ -34,7 +34,7 @@ const FARTHER: f64 = 16.0;
 type OpenBox = (Spans, Vec<Open>);
 
 /// One look at a stretch of the order.
-struct Look<'a> {
+struct OrderLook<'a> {
     layout: &'a BoundedStudy,
     job: SearchJob<'a>,
     shuffle: Shuffle,
@@ -49,7 +49,7 @@ struct Look<'a> {
 }
 
 /// What came of a look, on one thread or all.
-struct Drawn {
+struct DrawnDesigns {
     sample: FeasibleSample,
     searched: Searched,
     /// Feasible designs that were found.
@@ -59,7 +59,7 @@ struct Drawn {
 }
 
 /// How far the order of all designs is looked at.
-struct Reach {
+struct OrderReach {
     /// Feasible designs that are wanted, and some more, so that one look is nearly always enough.
     wanted: f64,
     designs: u64,
@@ -69,7 +69,7 @@ struct Reach {
 }
 
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "estimates")]
-impl Reach {
+impl OrderReach {
     fn new(count: usize, designs: u64) -> Self {
         // Six standard deviations of how many of the first designs are feasible, at most.
         let wanted = count as f64 + 6.0 * (count as f64).sqrt();
@@ -115,17 +115,18 @@ impl BoundedStudy {
         let size = range.end - range.start;
         let open = all_open(&self.requirements, &self.axes);
         let mut boxes: Vec<OpenBox> = self.axes.boxes(range).into_iter().map(|spans| (spans, open.clone())).collect();
-        let (mut reach, mut searched, told) = (Reach::new(asked.count, size), Searched::default(), AtomicU64::new(0));
+        let (mut reach, mut searched, told) = (OrderReach::new(asked.count, size), Searched::default(), AtomicU64::new(0));
         while reach.feasible < asked.count as u64 && reach.share < 1.0 {
             let share = reach.next();
-            let places = Reach::places(reach.share, share);
+            let places = OrderReach::places(reach.share, share);
             let shuffle = Shuffle::new(asked.seed);
-            let look = Look { layout: self, job, shuffle, places, at_once: reach.at_once(share), is_last: reach.is_last(), told: &told };
+            let look =
+                OrderLook { layout: self, job, shuffle, places, at_once: reach.at_once(share), is_last: reach.is_last(), told: &told };
             let parts = cut_for(workers.len(), std::mem::take(&mut boxes), &self.axes);
             let taken = AtomicUsize::new(0);
             let looked = on_threads(workers.iter_mut(), |worker| {
                 let sample = FeasibleSample::new(asked.count, asked.seed);
-                let mut own = Drawn { sample, searched: Searched::default(), feasible: 0, boxes: Vec::new() };
+                let mut own = DrawnDesigns { sample, searched: Searched::default(), feasible: 0, boxes: Vec::new() };
                 let mut early = Vec::new();
                 while let Some(part) = parts.get(taken.fetch_add(1, Ordering::Relaxed)) {
                     look.through(part, worker, &mut early, &mut own);
@@ -153,9 +154,9 @@ impl BoundedStudy {
     }
 }
 
-impl Look<'_> {
+impl OrderLook<'_> {
     /// Looks through a box for the designs that come `early`, and judges them.
-    fn through(&self, root: &OpenBox, worker: &mut Worker<'_>, early: &mut Vec<u64>, own: &mut Drawn) {
+    fn through(&self, root: &OpenBox, worker: &mut Worker<'_>, early: &mut Vec<u64>, own: &mut DrawnDesigns) {
         let BoundedStudy { axes, requirements, .. } = self.layout;
         let mut stack = vec![root.clone()];
         while let Some((spans, open)) = stack.pop() {
@@ -201,7 +202,7 @@ impl Look<'_> {
     }
 
     /// Judges the designs that come early, for the sample.
-    fn judge(&self, early: &mut Vec<u64>, worker: &mut Worker<'_>, own: &mut Drawn) {
+    fn judge(&self, early: &mut Vec<u64>, worker: &mut Worker<'_>, own: &mut DrawnDesigns) {
         early.sort_unstable();
         own.searched.evaluated += early.len() as u64;
         own.searched.evaluations += early.len() as u64;
@@ -292,8 +293,8 @@ mod tests {
 
     #[test]
     fn every_place_is_in_one_look() {
-        assert_eq!(Reach::places(0.0, 1.0), 0..=u64::MAX);
-        let (first, second) = (Reach::places(0.0, 0.3), Reach::places(0.3, 1.0));
+        assert_eq!(OrderReach::places(0.0, 1.0), 0..=u64::MAX);
+        let (first, second) = (OrderReach::places(0.0, 0.3), OrderReach::places(0.3, 1.0));
         assert_eq!((*first.start(), first.end() + 1, *second.end()), (0, *second.start(), u64::MAX));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::browser::Browser;
 use crate::explore_page::{COUNT, Explored, SMALL, answered, differs, open, study_file};
+use crate::random::Random;
 
 /// Types a number into the field of a part, as a person does who leaves it with Enter: what the field complains about, and what is in it.
 fn typed(browser: &mut Browser, part: &str, text: &str) -> String {
@@ -346,4 +347,44 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     assert!(told.as_str().is_some_and(|told| told.contains(ends.as_str().expect("a text"))), "{told} has no {ends}");
     let drawn = browser.evaluate("[...document.querySelectorAll('path.interval')].filter((it) => it.getAttribute('d')).length");
     assert!(drawn.as_u64() > Some(0), "the interval is drawn through the design");
+}
+
+/// Moves of sliders, boxes and fields in a row, most of them before the one before is answered.
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn the_front_after_a_burst_of_moves_is_that_of_the_last() {
+    let (folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let random = &mut Random::new(23);
+    let (mut asked, mut refused) = (0.0, 0);
+    for burst in 0..20 {
+        let (seed, before) = (random.whole(1, 1 << 30), browser.number("beltspace.timings.answers.length"));
+        // Each move is another one, after 0 to 60 ms: some are answered in between, most are not.
+        let moved = browser.number(&format!(
+            "(async () => {{ let state = {seed}; const next = () => (state = (state * 48271) % 2147483647) / 2147483647; \
+             const of = (selector) => [...document.querySelectorAll(`#controls ${{selector}}`)].filter((it) => it.closest('details').dataset.group !== 'others'); \
+             let moves = 0; for (let i = 0; i < 8; i++) {{ const kind = next(); const before = String(beltspace.page.changeList()); \
+             if (kind < 0.15) {{ const boxes = of('[data-group=constraints] input[type=checkbox]'); boxes[Math.floor(next() * boxes.length)].click(); }} \
+             else if (kind < 0.4) {{ const fields = of('input[type=text]'); const field = fields[Math.floor(next() * fields.length)]; \
+             field.value = String(Number(field.value) * (0.9 + 0.2 * next())); field.dispatchEvent(new Event('input', {{ bubbles: true }})); field.dispatchEvent(new Event('change', {{ bubbles: true }})); }} \
+             else {{ const sliders = of('input[type=range]'); const slider = sliders[Math.floor(next() * sliders.length)]; \
+             slider.value = Number(slider.min) + next() * (Number(slider.max) - Number(slider.min)); slider.dispatchEvent(new Event('input', {{ bubbles: true }})); }} \
+             moves += Number(before !== String(beltspace.page.changeList())); await new Promise((done) => setTimeout(done, 60 * next())); }} return moves; }})()"
+        ));
+        asked += moved;
+        browser.wait("beltspace.page.isAnswered()");
+        if browser.evaluate("document.querySelector('#live').dataset.kind") == "error" {
+            refused += 1;
+        } else {
+            assert_eq!(differs(&mut browser, SMALL, folder.path()), None, "burst {burst}: {moved} moves after {before} answers");
+        }
+        browser.evaluate(COUNT);
+        browser.evaluate("beltspace.page.resetChanges()");
+        answered(&mut browser);
+        assert_eq!(differs(&mut browser, SMALL, folder.path()), None, "after burst {burst}");
+    }
+    let answers = browser.number("beltspace.timings.answers.length");
+    eprintln!("20 bursts: {asked} moves, {answers} answers, {refused} refused");
+    assert!(refused < 15 && answers < asked, "{answers} answers to {asked} moves, {refused} refused");
 }
