@@ -1,7 +1,7 @@
 //! A sample of the feasible designs by bounds.
 //!
-//! The sample is the feasible designs that come first in a shuffled order of all (`reduce/sample`). Where a design stands in it is told by its
-//! index alone, so of a box the designs are looked through for those that come early, and only these are judged. Bounds settle the boxes
+//! The sample is the feasible designs that come first in a shuffled order of all (`reduce/sample`). Where a design stands in it is told by
+//! its index alone, so of a box the designs are looked through for those that come early, and only these are judged. Bounds settle the boxes
 //! without a feasible design before. How far the order must be looked at shows in the feasible designs that its start has.
 
 use super::axes::Spans;
@@ -14,15 +14,13 @@ use crate::reduce::{FeasibleSample, Reducer, Reducers, Shuffle};
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Most designs of a study: those of boxes with feasible designs are looked through, some thousand million a second.
+/// Most designs of a study: the places of all that stand in boxes with feasible designs are computed.
 pub const MOST_DESIGNS: u64 = 10_000_000_000;
 /// A box is looked through where so many of its designs are expected early in the order: bounds of its parts would take longer than
 /// judging them.
 const FEW: f64 = 4.0;
-/// Designs of a box without an infeasible one that is looked through at once.
-const FEASIBLE_AT_ONCE: u64 = 1 << 16;
-/// Boxes that all designs have room in: those that were looked through are kept for the next look.
-const BOXES: u64 = 1 << 15;
+/// Most designs of a box that is looked through at once.
+const MOST_AT_ONCE: u64 = 1 << 16;
 /// Designs that are judged together: the more, the more of them share a row.
 const TOGETHER: usize = 1 << 12;
 /// Feasible designs from which on their number tells how far to look.
@@ -42,10 +40,10 @@ struct OrderLook<'a> {
     places: RangeInclusive<u64>,
     /// A box of so few designs is looked through.
     at_once: u64,
-    /// Is it likely the last? Then what it looks through is settled.
+    /// Is it likely the last? Then it settles what it looks through.
     is_last: bool,
-    /// Designs of which progress was told.
-    told: &'a AtomicU64,
+    /// Designs of the range of which progress was not told yet.
+    untold: &'a AtomicU64,
 }
 
 /// What came of a look, on one thread or all.
@@ -54,8 +52,6 @@ struct DrawnDesigns {
     searched: Searched,
     /// Feasible designs that were found.
     feasible: u64,
-    /// The boxes that were looked through.
-    boxes: Vec<OpenBox>,
 }
 
 /// How far the order of all designs is looked at.
@@ -100,8 +96,8 @@ impl OrderReach {
     }
 
     /// Designs of a box of which few have their places in a share of the order.
-    fn at_once(&self, share: f64) -> u64 {
-        ((FEW / share) as u64).max(self.designs / BOXES).max(1)
+    fn at_once(share: f64) -> u64 {
+        ((FEW / share) as u64).min(MOST_AT_ONCE)
     }
 }
 
@@ -114,19 +110,19 @@ impl BoundedStudy {
         let kept = found.reported.samples.first_mut()?;
         let size = range.end - range.start;
         let open = all_open(&self.requirements, &self.axes);
-        let mut boxes: Vec<OpenBox> = self.axes.boxes(range).into_iter().map(|spans| (spans, open.clone())).collect();
-        let (mut reach, mut searched, told) = (OrderReach::new(asked.count, size), Searched::default(), AtomicU64::new(0));
+        let whole: Vec<OpenBox> = self.axes.boxes(range).into_iter().map(|spans| (spans, open.clone())).collect();
+        let parts = cut_for(workers.len(), whole, &self.axes);
+        let (mut reach, mut searched, untold) = (OrderReach::new(asked.count, size), Searched::default(), AtomicU64::new(size));
         while reach.feasible < asked.count as u64 && reach.share < 1.0 {
             let share = reach.next();
             let places = OrderReach::places(reach.share, share);
             let shuffle = Shuffle::new(asked.seed);
-            let look =
-                OrderLook { layout: self, job, shuffle, places, at_once: reach.at_once(share), is_last: reach.is_last(), told: &told };
-            let parts = cut_for(workers.len(), std::mem::take(&mut boxes), &self.axes);
+            let (at_once, is_last) = (OrderReach::at_once(share), reach.is_last());
+            let look = OrderLook { layout: self, job, shuffle, places, at_once, is_last, untold: &untold };
             let taken = AtomicUsize::new(0);
             let looked = on_threads(workers.iter_mut(), |worker| {
                 let sample = FeasibleSample::new(asked.count, asked.seed);
-                let mut own = DrawnDesigns { sample, searched: Searched::default(), feasible: 0, boxes: Vec::new() };
+                let mut own = DrawnDesigns { sample, searched: Searched::default(), feasible: 0 };
                 let mut early = Vec::new();
                 while let Some(part) = parts.get(taken.fetch_add(1, Ordering::Relaxed)) {
                     look.through(part, worker, &mut early, &mut own);
@@ -137,19 +133,18 @@ impl BoundedStudy {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            // What an earlier look has judged may be in a smaller box now that is surely infeasible.
-            searched.evaluated = 0;
+            // Each look has boxes of its own, smaller than those of the one before: the last one tells what became of the designs.
+            (searched.infeasible, searched.evaluated) = (0, 0);
             for own in looked {
                 kept.merge(own.sample);
                 searched.add(&own.searched);
                 reach.feasible += own.feasible;
-                boxes.extend(own.boxes);
             }
             reach.share = share;
         }
         // What is left comes later in the order than all of the sample, or was judged by an earlier look.
         searched.beaten = size - searched.infeasible - searched.evaluated;
-        progress(size - told.into_inner());
+        progress(untold.into_inner());
         Some(searched)
     }
 }
@@ -171,12 +166,9 @@ impl OrderLook<'_> {
                     own.searched.infeasible += size;
                     self.tell(size);
                 }
-                Some(Decided::Open(open, ..)) if size <= self.at_once || open.is_empty() && size <= FEASIBLE_AT_ONCE => {
+                Some(Decided::Open(open, ..)) if size <= self.at_once || open.is_empty() && size <= MOST_AT_ONCE => {
                     self.find(&spans, early);
-                    own.boxes.push((spans, open));
-                    if self.is_last {
-                        self.tell(size);
-                    }
+                    self.tell(size);
                     if early.len() >= TOGETHER {
                         self.judge(early, worker, own);
                     }
@@ -196,8 +188,11 @@ impl OrderLook<'_> {
         let SearchJob { plan, .. } = self.job;
         let (row, axes) = (plan.fast.count(), &self.layout.axes);
         let ((rows, places), (of_rows, of_places)) = (axes.rows(spans, row), axes.indices(spans, row));
-        for (own, index) in rows.iter().zip(of_rows) {
-            self.shuffle.each_within(&self.places, index, &of_places, |at| early.push(own * row + places[at]));
+        let of_rows = (rows.iter().map(|it| it * row).collect(), of_rows);
+        // Many at a time: along the rows, or across them where a box has less of each.
+        let (few, many) = if rows.len() <= places.len() { (of_rows, (places, of_places)) } else { ((places, of_places), of_rows) };
+        for (position, index) in few.0.iter().zip(few.1) {
+            self.shuffle.each_within(&self.places, index, &many.1, |at| early.push(position + many.0[at]));
         }
     }
 
@@ -213,9 +208,13 @@ impl OrderLook<'_> {
         early.clear();
     }
 
+    /// Tells of settled designs, of each once, whatever looks there are.
     fn tell(&self, designs: u64) {
-        self.told.fetch_add(designs, Ordering::Relaxed);
-        (self.job.progress)(designs);
+        if self.is_last {
+            let less = |untold: u64| Some(untold.saturating_sub(designs));
+            let untold = self.untold.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).unwrap_or_default();
+            (self.job.progress)(designs.min(untold));
+        }
     }
 }
 
@@ -272,12 +271,32 @@ mod tests {
 
     #[test]
     fn who_stops_it_gets_no_sample() {
-        let plan = plan("0.1", "50");
+        // More than there are: the first look tells what it settles.
+        let plan = plan("0.1", "9000");
         let layout = BoundedStudy::new(&plan).expect("bounds serve it");
         let (tables, stop, reduction) = (Tables::new(&plan), AtomicBool::new(true), Reduction::new(&plan, &[]));
         let range = 0..plan.designs();
         let job = SearchJob { plan: &plan, reduction: &reduction, range: &range, stop: &stop, progress: &|_| () };
         assert_eq!(layout.draw(job, &mut [layout.worker(&plan, &tables, &stop)], &mut reduction.start()), None);
+        // In the middle: once it has settled something.
+        stop.store(false, Ordering::Relaxed);
+        let job = SearchJob { progress: &|_| stop.store(true, Ordering::Relaxed), ..job };
+        assert_eq!(layout.draw(job, &mut [layout.worker(&plan, &tables, &stop)], &mut reduction.start()), None);
+    }
+
+    #[test]
+    fn each_look_goes_farther_until_there_are_enough() {
+        let mut reach = OrderReach::new(1000, 1_000_000);
+        assert!(reach.next() > 0.001 && reach.next() < 0.0013 && !reach.is_last());
+        for (share, feasible, next, is_last) in
+            [(0.001, 0, 0.016, false), (0.016, 29, 0.256, false), (0.016, 400, 0.05598, true), (0.1, 3, 1.0, true)]
+        {
+            (reach.share, reach.feasible) = (share, feasible);
+            assert!((reach.next() - next).abs() < 1e-4 && reach.is_last() == is_last, "{share} {feasible}: {}", reach.next());
+        }
+        // Even if nearly enough were found.
+        (reach.share, reach.feasible) = (0.05, 999);
+        assert!(reach.next() > 0.05);
     }
 
     #[test]
@@ -287,7 +306,7 @@ mod tests {
         let refused = |text: &str| {
             super::super::refusal(&Plan::new(study_of(&find("pulley-load").expect("it is a model"), text).expect("the study is right")))
         };
-        assert!(refused(text).is_some_and(|why| why.contains("10000000000 at most")), "{:?}", refused(text));
+        assert!(refused(text).is_some_and(|why| why.contains("10000000000 designs at most")), "{:?}", refused(text));
         assert_eq!(refused(&text.replace("100_001", "100_000")), None);
     }
 

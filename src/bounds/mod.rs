@@ -81,7 +81,7 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     if study.report.sample.is_some() && plan.designs() > drawn::MOST_DESIGNS {
         let most = drawn::MOST_DESIGNS;
         return Some(format!(
-            "sample in [report] takes a look at the place of every design in a shuffled order, and bounds do for {most} at most"
+            "sample in [report] takes the first feasible designs of a shuffled order, and bounds look up the places of {most} designs at most"
         ));
     }
     let cells = |map: &MapSpec| study.design[map.x].count().saturating_mul(study.design[map.y].count());

@@ -61,7 +61,7 @@ pub struct ObjectiveProduct {
 pub struct Searched {
     /// In boxes that surely violate a requirement.
     pub infeasible: u64,
-    /// In boxes that cannot hold what is sought.
+    /// In boxes that cannot hold what is sought. Of a sample: all that its last look at the order had no need to judge.
     pub beaten: u64,
     /// In boxes of two groups of axes.
     pub pairs: u64,

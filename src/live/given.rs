@@ -70,7 +70,7 @@ fn over_scenarios(study: &Study, is_uncertain: bool, (number, axis): (usize, &Ax
     let input = axis.inputs()[column];
     let described = &study.model.inputs[input];
     if described.is_enumeration() || axis.has_number(column, |it| described.word_for(it).is_some()) {
-        let is_told = matches!(axis, Axis::Single { .. }) && (2..=PLACES).contains(&axis.count());
+        let is_told = matches!(axis, Axis::Single { .. }) && (2..PLACES).contains(&axis.count());
         return is_told.then_some(GivenRange::Alone { is_uncertain, axis: number }).into_iter().collect();
     }
     let (least, largest) = axis.ends(column);
@@ -134,21 +134,17 @@ fn fixed_range(study: &Study, input: usize) -> Option<Axis> {
     let (described, value) = (&study.model.inputs[input], study.fixed[input]);
     let (low, high) = ends_of_fixed(study, input);
     let words = described.words.iter().map(|it| it.1);
-    let listed = |levels: Vec<f64>| (levels.len() > 1).then_some(Axis::Single { input, levels: Levels::List(levels) });
-    if described.is_enumeration() {
-        return listed(words.collect());
-    }
-    if !(high - low).is_finite() {
-        return None;
-    }
     if described.word_for(value).is_some() {
         let place = |at: u32| low + (high - low) * f64::from(at) / f64::from(NUMBERS - 1);
-        let mut numbers: Vec<f64> = (0..NUMBERS).map(place).map(|it| if described.integer { it.round() } else { it }).collect();
-        numbers.retain(|&it| described.valid.contains(it));
+        // Numbers that stand beside words are read.
+        let short = |it: f64| if described.integer { it.round() } else { format!("{it:.3e}").parse().unwrap_or(it) };
+        let mut numbers: Vec<f64> = (0..NUMBERS).map(place).map(short).collect();
+        numbers.retain(|&it| !described.is_enumeration() && it.is_finite() && described.valid.contains(it));
         numbers.dedup();
-        return listed(words.chain(numbers).collect());
+        let levels: Vec<f64> = words.chain(numbers).collect();
+        return (levels.len() > 1).then_some(Axis::Single { input, levels: Levels::List(levels) });
     }
-    if !(low..=high).contains(&value) {
+    if !(high - low).is_finite() || !(low..=high).contains(&value) {
         return None;
     }
     let levels = if described.integer {

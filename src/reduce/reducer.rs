@@ -24,7 +24,7 @@ use serde_json::{Map, Value};
 /// cannot: "feasible in `[report]` asks for every feasible design".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReducerNeeds {
-    /// Designs that may be among the best by one quantity, or the first in some order: any engine may leave out what is surely not, and
+    /// Designs that may be among the best by one quantity, or the first in some order: any engine may leave out what surely is neither, and
     /// bounds can search for them.
     Candidates,
     /// Counts of all feasible designs by bins or cells, or the best of each cell: bounds count and search box by box, and a device hands over

@@ -119,7 +119,7 @@ pub fn around_with(
     let given = given.iter().map(|it| match it {
         GivenRange::Fixed(axis) => line.slice(axis, most),
         GivenRange::End(end) => line.scenario_end(*end, most),
-        GivenRange::Alone { is_uncertain, axis } => line.alone((*is_uncertain, *axis), most),
+        GivenRange::Alone { is_uncertain, axis } => line.alone((*is_uncertain, *axis)),
         GivenRange::Mean { drawn, from, to } => line.mean(*drawn, (*from, *to), most),
     });
     let slices = own.chain(given).collect::<Result<Vec<_>>>()?;
@@ -243,7 +243,7 @@ impl DesignLine<'_> {
         } else {
             AxisPlaces::Between { low: end.from, high: end.to, log: axis.is_logarithmic(), own }
         };
-        let (values, rows) = self.of_scenarios(&places, own, most, other)?;
+        let (values, rows) = self.of_scenarios(&places, own, self.few(most), other)?;
         let which = match end.is_largest {
             _ if least == largest => "",
             true => ", the largest",
@@ -254,7 +254,7 @@ impl DesignLine<'_> {
     }
 
     /// The scenarios with one of the words of an axis alone, beside all of them.
-    fn alone(&self, which: (bool, usize), most: u64) -> Result<Slice> {
+    fn alone(&self, which: (bool, usize)) -> Result<Slice> {
         let axis = &self.scenario_axes(which.0)[which.1];
         let input = axis.inputs()[0];
         let described = &self.study.model.inputs[input];
@@ -264,7 +264,8 @@ impl DesignLine<'_> {
             _ => self.with_axis(alone, which, Axis::Single { input, levels: Levels::List(vec![word(at)]) }),
         };
         let places = AxisPlaces::new(&Levels::Step { from: 0.0, step: 1.0, count: axis.count() + 1, log: false }, 0.0);
-        let (values, rows) = self.of_scenarios(&places, 0.0, most, other)?;
+        // Words have no order: all of them are looked at.
+        let (values, rows) = self.of_scenarios(&places, 0.0, axis.count() + 1, other)?;
         let called = |&at: &f64| if at == 0.0 { "all of them".to_owned() } else { format!("{} alone", written(described, word(at))) };
         let words = Some(values.iter().map(called).collect());
         Ok(Slice { name: described.name.clone(), unit: String::new(), own: 0.0, values, words, rows })
@@ -310,7 +311,7 @@ impl DesignLine<'_> {
             moved[number].iter_mut().for_each(|it| *it += value - own);
             Ok(alone.with_drawn(moved))
         };
-        let (values, rows) = self.of_studies(&AxisPlaces::Between { low, high, log: false, own }, own, most, other)?;
+        let (values, rows) = self.of_studies(&AxisPlaces::Between { low, high, log: false, own }, own, self.few(most), other)?;
         let (of, unit) = match uncertain.effect {
             Effect::Is => ("mean", study.model.inputs[uncertain.input].unit.symbol),
             Effect::Plus => ("mean deviation", study.model.inputs[uncertain.input].unit.symbol),
@@ -338,8 +339,12 @@ impl DesignLine<'_> {
             let each = one_after_another(values.to_vec(), self.threads, || (), |(), value| row(value));
             each.into_iter().collect::<Result<Vec<Row>>>()
         };
-        let most = if study.probability.is_some() { most.min(DRAWN_PLACES) } else { most };
         along_places(places, own, most, judged)
+    }
+
+    /// Places along what is a study of its own at each.
+    fn few(&self, most: u64) -> u64 {
+        if self.study.probability.is_some() { most.min(DRAWN_PLACES) } else { most }
     }
 }
 

@@ -80,7 +80,7 @@ page.axisWords = (name, unit) => {
   const suffix = `_${(unit ?? "").replace("/", "_per_").replace("µ", "u").replace(/[ ·]/g, "")}`;
   const stem = unit && name.endsWith(suffix) && name.length > suffix.length ? name.slice(0, -suffix.length) : name;
   // The point of a quantile: `draw_q99_9`.
-  return stem.replace(/(?<=_q\d+)_(?=\d)/, ".").replace(/_/g, " ");
+  return stem.replace(/(^|_)(q\d+)_(\d+)(?=_|$)/, "$1$2.$3").replace(/_/g, " ");
 };
 page.axisName = (name, unit) => page.axisWords(name, unit) + (unit ? ` [${page.unit(unit)}]` : "");
 

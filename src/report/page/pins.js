@@ -68,7 +68,11 @@
       const [design, letter] = named.split("@");
       return { design, letter: LETTERS.includes(letter) ? letter : (LETTERS[i] ?? null), set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };
     });
-    awaited = given.filter(isHere).slice(0, MOST);
+    const isFirst = (pin, i) => given.findIndex((other) => other.design === pin.design && isOf(other, pin.set)) === i;
+    const wanted = given.filter(isFirst).filter(isHere).slice(0, MOST);
+    // An address that somebody wrote may have a letter twice.
+    awaited = [];
+    for (const pin of wanted) awaited.push({ ...pin, letter: awaited.some((other) => other.letter === pin.letter) || !pin.letter ? free() : pin.letter });
     adoptAwaited();
     page.events.call("pins");
     if (page.askPin) awaited.filter((pin) => !isOf(pin, askedSet())).forEach(askOther);

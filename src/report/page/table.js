@@ -61,9 +61,9 @@
     const marked = new Set([...page.pins().filter(page.isOfShown).map((pin) => page.rowOf(pin.design)), page.state.card]);
     const beyond = rows.length > MOST ? rows.slice(MOST).filter((row) => marked.has(row)) : [];
     page.keepFocus(body, () => body.replaceChildren(...rows.slice(0, MOST).concat(beyond).map(line)));
-    const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown${beyond.length ? ", and what is pinned or open" : ""}; the CSV has them all.` : "");
-    const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
-    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
+    const first = (most, more) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown${more}; the CSV has them all.` : "");
+    const said = rows.length ? first(MOST, beyond.length ? ", and what is pinned or open" : "") : "No design is in all of the selected ranges.";
+    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted, "") : said));
     page.byId("csv").disabled = !rows.length;
     oneStop(body.contains(document.activeElement) ? document.activeElement : null);
     page.oneStop(heads, "button", { below: body.querySelector("tr") });
@@ -107,7 +107,8 @@
     page.events.on("card.table", () => {
       markCurrent();
       const { card } = page.state;
-      if (card !== null && page.mask[card] && !body.querySelector(`[data-row="${card}"]`)) later();
+      // A design that is listed for its card alone comes and goes with it.
+      if (body.rows.length > MOST || (card !== null && page.mask[card] && !body.querySelector(`[data-row="${card}"]`))) later();
     });
   };
 }

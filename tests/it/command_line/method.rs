@@ -40,7 +40,7 @@ fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
     let pulley = ask(folder.path(), "models pulley --study").text();
     let refused = [
         (
-            "sample in [report] takes a look at the place of every design in a shuffled order, and bounds do for 10000000000 at most",
+            "sample in [report] takes the first feasible designs of a shuffled order, and bounds look up the places of 10000000000 designs at most",
             changed(&report("sample = 100"), &[("to = 30, count = 13", "to = 30, count = 13_000"), ("count = 21 }", "count = 21_000 }")]),
         ),
         ("variants in [report]", changed(&report("variants = true"), &[("to = 0.50, count = 5", "to = 0.50, count = 2")])),
