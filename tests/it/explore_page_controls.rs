@@ -386,5 +386,5 @@ fn the_front_after_a_burst_of_moves_is_that_of_the_last() {
     }
     let answers = browser.number("beltspace.timings.answers.length");
     eprintln!("20 bursts: {asked} moves, {answers} answers, {refused} refused");
-    assert!(refused < 8 && answers < asked, "{answers} answers to {asked} moves, {refused} refused");
+    assert!(refused < 12 && answers < asked, "{answers} answers to {asked} moves, {refused} refused");
 }

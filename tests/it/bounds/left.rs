@@ -34,7 +34,7 @@ resultant_force_N = "min"
 mean_radius_mm = "min"
 [report]
 top = { by = "resultant_force_N", count = 5 }
-sample = 30
+sample = 1_000_000
 histograms = [{ of = "friction_margin", bins = 12 }]
 maps = [
     { x = "mean_radius_mm", y = "groove_count", value = "resultant_force_N" },
