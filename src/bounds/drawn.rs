@@ -14,7 +14,7 @@ use crate::reduce::{FeasibleSample, Reducer, Reducers, Shuffle};
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Most designs of a study: the places of all that stand in boxes with feasible designs are computed.
+/// Most designs of a study: the place of every design is computed that stands in a box with feasible ones.
 pub const MOST_DESIGNS: u64 = 10_000_000_000;
 /// A box is looked through where so many of its designs are expected early in the order: bounds of its parts would take longer than
 /// judging them.
@@ -56,7 +56,7 @@ struct DrawnDesigns {
 
 /// How far the order of all designs is looked at.
 struct OrderReach {
-    /// Feasible designs that are wanted, and some more, so that one look is nearly always enough.
+    /// Feasible designs that are wanted, and some more: the first look tells how many there are, the next one nearly always finds enough.
     wanted: f64,
     designs: u64,
     /// Share of the order that was looked at, and the feasible designs that it had.

@@ -136,7 +136,7 @@ fn fixed_range(study: &Study, input: usize) -> Option<Axis> {
     let words = described.words.iter().map(|it| it.1);
     if described.word_for(value).is_some() {
         let place = |at: u32| low + (high - low) * f64::from(at) / f64::from(NUMBERS - 1);
-        // Numbers that stand beside words are read.
+        // They are written out beside the words: four digits do.
         let short = |it: f64| if described.integer { it.round() } else { format!("{it:.3e}").parse().unwrap_or(it) };
         let mut numbers: Vec<f64> = (0..NUMBERS).map(place).map(short).collect();
         numbers.retain(|&it| !described.is_enumeration() && it.is_finite() && described.valid.contains(it));

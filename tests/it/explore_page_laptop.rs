@@ -67,8 +67,13 @@ fn both_views_are_seen_together_on_a_laptop_and_titles_are_clear_on_every_screen
         assert!(axes.len() >= 8 && 10 * seen >= 9 * axes.len(), "{seen} of {} axes at {width}", axes.len());
         titles_are_clear(&mut browser);
     }
-    // With a card too: it stands below both where there is no room beside them.
+    // With a card too: it stands below both where there is no room beside them, and brings them into sight.
+    browser.resize(1366, 768);
+    browser.evaluate("scrollTo({ top: 0, behavior: 'instant' })");
     browser.evaluate("beltspace.openCard(beltspace.page.front.knee)");
+    let [card] = boxes(&mut browser, "#card")[..] else { panic!("one card") };
+    let [views] = boxes(&mut browser, "#views")[..] else { panic!("one row of views") };
+    assert!(views[1] >= 0.0 && card[1] - views[1] > 250.0, "{views:?} {card:?}");
     for (width, height) in [(1280, 720), (1440, 900), (1700, 900)] {
         resized(&mut browser, width, height);
         browser.picture(&format!("explore-card-{width}"));

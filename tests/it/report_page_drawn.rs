@@ -273,6 +273,14 @@ fn the_knee_has_slices_and_words_that_hold() {
          return [box.querySelectorAll('.limit').length, box.querySelectorAll('.limit-beyond').length, box.textContent.includes('(limit ')]; }; \
          return [draw([1e6, 1.1e6]), draw([-1, 1]), draw([3, 3])]; })()";
     assert_eq!(browser.evaluate(limits), serde_json::json!([[0, 1, false], [1, 0, false], [0, 0, true]]));
+    // Infeasible places that touch are one band, with one line below it.
+    let bands = "(() => { const { page } = beltspace; const box = document.createElement('div'); const [column] = page.front.objectives.map((it) => it.column); \
+         page.drawSlices(box, { columns: [column], slices: [{ input: 'ratio', unit: '', own: 1, words: null, at: [0, 1, 2, 3, 4], \
+         feasible: [false, true, false, false, true], status: [null, null, null, null, null], lines: [{ values: [1, 2, 3, 4, 5], scenarios: [0, 0, 0, 0, 0] }] }] }); \
+         return ['no-go', 'no-go-line'].map((name) => [...box.querySelectorAll(`.${name}`)].map((it) => Number(it.getAttribute('width')) > 0)); })()";
+    assert_eq!(browser.evaluate(bands), serde_json::json!([[true, true], [true, true]]));
+    let words = "['slip_margin_draw_q99_9', 'force_draw_q99_N', 'a_q1_2nd'].map((name) => beltspace.page.axisWords(name, name.endsWith('_N') ? 'N' : ''))";
+    assert_eq!(browser.evaluate(words), serde_json::json!(["slip margin draw q99.9", "force draw q99", "a q1 2nd"]));
     let units = "['N/mm2', 'kg/m3', 'cm3', 'um', 'Nm', 'deg', 'm2/s', 'm/s', 'team2'].map(beltspace.page.unit)";
     assert_eq!(browser.evaluate(units), serde_json::json!(["N/mm²", "kg/m³", "cm³", "µm", "N m", "°", "m²/s", "m/s", "team2"]));
     // Where scenarios change places by rounding only, no switch is drawn; a timing belt has real ones.

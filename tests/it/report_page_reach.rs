@@ -210,7 +210,7 @@ fn what_is_drawn_and_in_which_cases_is_in_the_header_and_on_the_card() {
     let swept = Swept::shipped("push-belt-yield");
     let mut browser = Browser::open(&swept.page(), "");
     let question = browser.text("document.querySelector('[data-testid=question]').innerText");
-    for words in ["every draw must keep", "slip_margin", "at most 75\u{202f}000", "in every operating case of", "0.5 to 2", "normal"] {
+    for words in ["every draw must keep", "slip_margin", "at most 75\u{202f}000 N", "in every operating case of", "0.5 to 2", "normal"] {
         assert!(question.contains(words), "{words} is not in {question}");
     }
     browser.evaluate("beltspace.openCard(0)");
@@ -242,9 +242,31 @@ fn views_of_the_same_designs_stand_side_by_side_on_a_laptop() {
     for view in ["#splom .pin-dot", "#parallel .pin-line", "#designs .pin-letter", ".map-stage .pin-dot"] {
         browser.wait(&format!("document.querySelector({view:?})"));
     }
+    // So is the one whose card is open, as long as it is.
+    browser.evaluate("beltspace.openCard(1200)");
+    browser.wait("document.querySelector('#designs [data-row=\"1200\"].is-current')");
+    browser.evaluate("beltspace.closeCard()");
+    browser.wait("!document.querySelector('#designs [data-row=\"1200\"]')");
     // Axes of inputs have the ends of what was searched.
     assert_eq!(browser.number("document.querySelectorAll('#parallel .axis[data-name=band_thickness_mm] .range-end').length"), 2.0);
     assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn each_line_of_a_contour_lies_on_a_white_one() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.3, count = 21 }\n\
+        groove_angle_deg = { from = 18, to = 30, count = 13 }\n[fixed]\ntraction = 0.4\n[objectives]\naxial_force_N = \"min\"\n\
+        [report]\nmaps = [{ x = \"band_thickness_mm\", y = \"groove_angle_deg\", value = \"axial_force_N\", contours = [{ of = \"stress_margin\", at = [0.3] }] }]\n";
+    let swept = Swept::text(text);
+    let mut browser = Browser::open(&swept.page(), "");
+    let lines = "[...document.querySelectorAll('.contour')].map((it) => [...it.children].map((line) => [line.getAttribute('d'), getComputedStyle(line).stroke]))";
+    let lines: Vec<Vec<(String, String)>> = serde_json::from_value(browser.evaluate(lines)).expect("lines with colours");
+    assert!(lines.iter().any(|it| !it.is_empty()), "{lines:?}");
+    for pair in lines.iter().flat_map(|it| it.chunks(2)) {
+        let [casing, line] = pair else { panic!("a line alone: {pair:?}") };
+        assert!(casing.0 == line.0 && casing.1 == "rgb(255, 255, 255)" && line.1 != casing.1, "{casing:?} {line:?}");
+    }
 }
 
 #[test]
