@@ -12,7 +12,7 @@ use crate::tape::{ColumnValue, Known, List, Node, NodeColumns, Operation, Set};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Designs of a chunk: what the formula computes of them stays in the second-level cache.
-const DESIGNS: usize = 256;
+const DESIGNS: usize = 420;
 /// Formulas with more operations than this are evaluated one by one.
 const MOST_OPERATIONS: usize = 4096;
 /// Scenarios with more axes than this likewise.
@@ -77,10 +77,8 @@ impl<'p> WorstColumns<'p> {
             return None;
         }
         let known = known(study, designs, &of_study);
-        let conditions: Vec<usize> = (0..model.conditions.len()).collect();
-        let whole = formula.whole(&known, Set::of(&outputs), Set::of(&conditions));
-        let results = outputs.iter().map(|&it| whole.outputs[it]).chain(conditions.iter().map(|&it| whole.conditions[it]));
-        let list = List::cut(&whole.recording, &results.map(Some).collect::<Vec<_>>());
+        let whole = formula.whole(&known, Set::of(&outputs), (0..model.conditions.len()).collect());
+        let list = whole.settled(&known, &outputs, model.conditions.iter().map(|it| it.strict));
         if list.operations.len() > MOST_OPERATIONS {
             return None;
         }
@@ -125,12 +123,10 @@ impl<'p> WorstColumns<'p> {
             if let Some(nodes) = self.turns.get(turned) {
                 self.compute(nodes, numbers, first, count, &inputs);
             }
-            let result = |place: usize| {
-                let node = self.list.results[place].expect("every result is asked for");
-                numbers.value(node, |node| self.each[node as usize])
-            };
+            // A condition that surely holds has no result.
+            let result = |place: usize| self.list.results[place].map(|node| numbers.value(node, |node| self.each[node as usize]));
             let is_same = |place: usize| !is_first && self.results[place].axes >> turned == 0;
-            let new = |place: usize| (!is_same(place)).then(|| result(place));
+            let new = |place: usize| result(place).filter(|_| !is_same(place));
             let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
             self.judge.judge(model, |condition| new(conditions + condition), new, &mut statuses, &mut places, &mut room);
             let scenario = steps.iter().zip(&self.axes).map(|(&step, (axis, stride))| level(axis, step) * stride).sum();

@@ -43,7 +43,7 @@ pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Scratch, Si
 pub use known::Models;
 pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
-pub(crate) use many::{ColumnEnds, ColumnJudge, JudgeRoom, ends};
+pub(crate) use many::{ColumnCheck, ColumnEnds, ColumnJudge, JudgeRoom, ends};
 pub use many::{EvaluatedColumns, Evaluations, ManyOptions, ResultColumns, evaluate_columns, evaluate_into, evaluate_many};
 pub use model::{AlongTheBelt, Doubts, Model, Notes, PulleyOf, Remarks};
 pub use pulley::CHECK_POINT_STRESSES;

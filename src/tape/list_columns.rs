@@ -4,7 +4,7 @@ use super::{ColumnValue, List, Node, NodeColumns, Operation};
 
 /// Most designs in a chunk of a list: all the columns that are read at a time fit the second-level cache. Not a power of two: columns that
 /// begin a multiple of 4 kB apart would share the same few places of the caches, which takes twice the time.
-pub const LIST_CHUNK: usize = 312;
+pub const LIST_CHUNK: usize = 676;
 
 /// A list over a block of designs: which operations are needed, and which have a number per design.
 #[derive(Debug)]
@@ -72,8 +72,12 @@ impl ListColumns {
 
     /// A result of the list over the current chunk.
     pub fn result(&self, list: &List, result: usize) -> ColumnValue<'_> {
-        let node = list.results[result].expect("every result is asked for");
-        self.numbers.value(node, |node| self.each[node as usize])
+        self.asked_result(list, result).expect("every result is asked for")
+    }
+
+    /// The same; `None` if nobody asked for it.
+    pub fn asked_result(&self, list: &List, result: usize) -> Option<ColumnValue<'_>> {
+        list.results[result].map(|node| self.numbers.value(node, |node| self.each[node as usize]))
     }
 }
 

@@ -8,7 +8,7 @@
 //! the formula was written: so a model that is read from a file takes a device no longer than one of the program.
 
 use super::list::needed;
-use super::{Binary, EVERYTHING, Fields, Interval, Known, List, Node, Operation, Reads, Recordable, Recording, Set, Unary};
+use super::{Binary, EVERYTHING, Fields, Interval, Known, List, Node, Operation, Reads, Recordable, Recording, Set, Unary, Whole};
 use crate::interned::{interned, interned_list};
 
 /// The lists of a formula's two stages, as a device runs them.
@@ -184,6 +184,21 @@ impl SettledStages {
     }
 }
 
+impl Whole {
+    /// What these outputs and the margins of all conditions need for inputs of known ranges. A condition that surely holds has no result; of
+    /// each is told whether its margin must be greater than zero (else at least zero).
+    pub fn settled(&self, known: &[Known], outputs: &[usize], strict: impl IntoIterator<Item = bool>) -> List {
+        let ranges: Vec<Interval> = known.iter().map(range_of).collect();
+        let conditions: Vec<(usize, bool)> = strict.into_iter().enumerate().collect();
+        let asked = outputs.iter().map(|&it| self.outputs[it]).chain(conditions.iter().map(|&(it, _)| self.conditions[it]));
+        let (recording, results) = settled(&self.recording, &asked.map(Some).collect::<Vec<_>>(), &ranges);
+        let (outputs, margins) = results.split_at(outputs.len());
+        let open = open(&conditions, margins);
+        let margins = margins.iter().enumerate().map(|(condition, &(node, _))| node.filter(|_| open.contains(condition)));
+        List::cut(&recording, &outputs.iter().map(|&(node, _)| node).chain(margins).collect::<Vec<_>>())
+    }
+}
+
 fn range_of(known: &Known) -> Interval {
     match *known {
         Known::Fixed(value) => Interval::point(value),
@@ -236,11 +251,37 @@ fn by_node<T: Clone + Default>(recording: &Recording, results: &[Option<Node>], 
     needed.into_iter().map(|needed| if needed { of_list.next().expect("the list has it") } else { T::default() }).collect()
 }
 
+/// Zero, as it is recorded.
+const ZERO: Operation = Operation::Constant(0);
+
+/// The range of every operation of a list that is not inside the function of a root. What may be no number has every range: there the
+/// answers to comparisons are others than the ends of a range would give.
+fn ranges(list: &List, inputs: &[Interval]) -> Vec<Interval> {
+    let mut ranges = vec![EVERYTHING; list.operations.len()];
+    for (node, &operation) in list.operations.iter().enumerate().filter(|(node, _)| !list.inner[*node]) {
+        if let Operation::Input(input) = operation {
+            ranges[node] = inputs[usize::from(input)];
+            continue;
+        }
+        list.compute(node as Node, &mut ranges);
+        let may_be_none = match operation {
+            Operation::Unary(Unary::Sqrt, a) => ranges[a as usize].low < 0.0,
+            Operation::Unary(Unary::Asin, a) => ranges[a as usize].low < -1.0 || ranges[a as usize].high > 1.0,
+            Operation::Unary(Unary::Sin | Unary::Cos, a) => !ranges[a as usize].is_finite(),
+            _ => false,
+        };
+        if may_be_none {
+            ranges[node] = EVERYTHING;
+        }
+    }
+    ranges
+}
+
 /// A recording in which every choice that is sure where inputs have these ranges is what was chosen, with what each result is then and the
 /// range that it lies in.
 fn settled(recording: &Recording, results: &[Option<Node>], inputs: &[Interval]) -> (Recording, Vec<(Option<Node>, Interval)>) {
     let list = List::cut(recording, results);
-    let values = list.values(inputs, EVERYTHING);
+    let values = ranges(&list, inputs);
     // Of every operation, the one that it comes to.
     let mut same: Vec<Node> = (0..recording.operations.len() as Node).collect();
     let needed = needed(recording, results);
@@ -255,6 +296,22 @@ fn settled(recording: &Recording, results: &[Option<Node>], inputs: &[Interval])
             // Of equal numbers either may be taken, but for the sign of zero.
             Operation::Binary(kind @ (Binary::Min | Binary::Max), a, b) if range(a).high < range(b).low => Some(kind == Binary::Min),
             Operation::Binary(kind @ (Binary::Min | Binary::Max), a, b) if range(b).high < range(a).low => Some(kind == Binary::Max),
+            Operation::Binary(kind, a, b) => {
+                // The operands as they are now: a zero may have come to them.
+                let is_zero = |node: Node| recording.operations[same[node as usize] as usize] == ZERO;
+                let is_positive = |node: Node| range(node).low > 0.0 && range(node).is_finite();
+                let [a_now, b_now] = match recording.operations[node] {
+                    Operation::Binary(_, a, b) => [a, b],
+                    other => unreachable!("{other:?} is no operation on two numbers"),
+                };
+                match kind {
+                    // Without a mass or a speed there is no centrifugal force.
+                    Binary::Mul if is_zero(a_now) && (is_zero(b_now) || is_positive(b)) => Some(true),
+                    Binary::Mul if is_zero(b_now) && is_positive(a) => Some(false),
+                    Binary::Sub if is_zero(b_now) => Some(true),
+                    _ => None,
+                }
+            }
             _ => None,
         };
         let chosen = is_first.map(|is_first| match recording.operations[node] {

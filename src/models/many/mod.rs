@@ -8,17 +8,18 @@ use super::{Evaluation, Model, Status, evaluate, evaluate_asked, input_to_si};
 use crate::error::{Error, Result};
 use crate::likeness::closest;
 use crate::parallel::on_threads;
-use crate::tape::Set;
+use crate::tape::{LIST_CHUNK, Set};
 use columns::RecordedColumns;
 pub(crate) use judge::{ColumnJudge, JudgeRoom};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 pub(crate) use vectors::{ColumnEnds, ends};
 
 /// Rows that a thread is started for at least.
 const ROWS_PER_THREAD: usize = 256;
-/// Rows that a thread takes at a time, about.
-const ROWS_AT_A_TIME: usize = 1 << 15;
+/// Rows that a thread takes at a time, about: what is read of them twice stays in the second-level cache.
+const ROWS_AT_A_TIME: usize = 6 * LIST_CHUNK;
 /// Rows from which on recording the formula takes less time than it saves.
 const ROWS_TO_RECORD: usize = 512;
 
@@ -70,14 +71,24 @@ pub struct ManyOptions<'a> {
     pub threads: usize,
     /// Set by somebody else to end the work.
     pub stop: Option<&'a AtomicBool>,
-    /// The ends of the columns, if they are known already, in their order.
-    pub(crate) ends: Option<&'a [Option<ColumnEnds>]>,
+    /// Asked before rows are evaluated: may a column have such numbers? Else the work ends as if it were stopped.
+    pub(crate) check: Option<ColumnCheck<'a>>,
+}
+
+/// May the column of this number, in the order of the columns, have numbers with these ends?
+#[derive(Clone, Copy)]
+pub(crate) struct ColumnCheck<'a>(pub &'a (dyn Fn(usize, ColumnEnds) -> bool + Sync));
+
+impl std::fmt::Debug for ColumnCheck<'_> {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        to.write_str("a check")
+    }
 }
 
 impl Default for ManyOptions<'_> {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self { outputs: None, inputs: None, threads, stop: None, ends: None }
+        Self { outputs: None, inputs: None, threads, stop: None, check: None }
     }
 }
 
@@ -222,15 +233,22 @@ pub fn evaluate_into<S: From<Status> + Send>(
     // Whoever is done takes the next part: another program may have the core of somebody else.
     let next = Mutex::new(parts.into_iter());
     let take = || next.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let refused = AtomicBool::new(false);
     on_threads(0..threads, |_| {
+        let mut rooms = recorded.as_ref().map(RecordedColumns::rooms);
         while let Some(part) = take() {
-            match &recorded {
-                Some(recorded) => recorded.evaluate(&asked, part),
-                None => asked.one_by_one(part),
+            let ends = asked.ends(part.rows());
+            refused.fetch_or(!asked.accepts(&ends), Ordering::Relaxed);
+            if refused.load(Ordering::Relaxed) {
+                break;
+            }
+            match (&recorded, &mut rooms) {
+                (Some(recorded), Some(rooms)) => recorded.evaluate(&asked, part, &ends, rooms),
+                _ => asked.one_by_one(part),
             }
         }
     });
-    if options.is_stopped() { Err(Error::Stopped { kept: None }) } else { Ok(()) }
+    if options.is_stopped() || refused.into_inner() { Err(Error::Stopped { kept: None }) } else { Ok(()) }
 }
 
 /// What is asked.
@@ -250,6 +268,12 @@ struct ResultPart<'a, S> {
     results: ResultColumns<'a, S>,
 }
 
+impl<S> ResultPart<'_, S> {
+    fn rows(&self) -> Range<usize> {
+        self.first..self.first + self.results.statuses.len()
+    }
+}
+
 /// The result in parts of so many rows.
 fn parts<S>(results: ResultColumns<'_, S>, share: usize) -> Vec<ResultPart<'_, S>> {
     let mut outputs: Vec<_> = results.outputs.into_iter().map(|column| column.chunks_mut(share)).collect();
@@ -261,6 +285,16 @@ fn parts<S>(results: ResultColumns<'_, S>, share: usize) -> Vec<ResultPart<'_, S
 }
 
 impl AskedColumns<'_> {
+    /// The ends of some rows of each column.
+    fn ends(&self, rows: Range<usize>) -> Vec<ColumnEnds> {
+        self.given.iter().map(|(_, values)| ends(&values[rows.clone()])).collect()
+    }
+
+    fn accepts(&self, ends: &[ColumnEnds]) -> bool {
+        let accepts = |check: ColumnCheck<'_>| ends.iter().enumerate().all(|(column, &ends)| (check.0)(column, ends));
+        self.options.check.is_none_or(accepts)
+    }
+
     fn one_by_one<S: From<Status>>(&self, part: ResultPart<'_, S>) {
         let ResultPart { first, results: ResultColumns { statuses, mut outputs } } = part;
         let (asked, mut inputs) = (Set::of(self.outputs), self.inputs.to_vec());

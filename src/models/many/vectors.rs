@@ -1,5 +1,6 @@
 //! Loops over columns of numbers, in the widest vectors that the processor has.
 
+use crate::real::LANES;
 use multiversion::multiversion;
 
 /// What is known of a column of numbers.
@@ -18,25 +19,32 @@ pub(crate) struct ColumnEnds {
 /// The ends of a column.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub(crate) fn ends(values: &[f64]) -> ColumnEnds {
-    // Eight lanes of each, so that no number waits for the one before it.
-    let (mut low, mut high) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
-    let (mut nan, mut broken) = ([0_u64; 8], [0_u64; 8]);
-    let (eights, rest) = values.as_chunks::<8>();
-    let mut take = |lane: usize, value: f64| {
-        low[lane] = if value < low[lane] { value } else { low[lane] };
-        high[lane] = if value > high[lane] { value } else { high[lane] };
-        nan[lane] |= u64::from(value.is_nan());
-        broken[lane] |= u64::from(value != value.trunc());
-    };
-    for eight in eights {
-        (0..8).for_each(|lane| take(lane, eight[lane]));
+    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let (mut nan, mut broken) = ([0_u64; LANES], [0_u64; LANES]);
+    let (whole, rest) = values.as_chunks::<LANES>();
+    // The rest with its last number again and again.
+    let mut last = [rest.last().copied().unwrap_or_default(); LANES];
+    last[..rest.len()].copy_from_slice(rest);
+    for numbers in whole.iter().chain((!rest.is_empty()).then_some(&last)) {
+        // A loop for each question: in one the compiler shuffles lanes, which takes four times as long.
+        for (low, &it) in low.iter_mut().zip(numbers) {
+            *low = if it < *low { it } else { *low };
+        }
+        for (high, &it) in high.iter_mut().zip(numbers) {
+            *high = if it > *high { it } else { *high };
+        }
+        for (nan, it) in nan.iter_mut().zip(numbers) {
+            *nan |= u64::from(it.is_nan());
+        }
+        for (broken, &it) in broken.iter_mut().zip(numbers) {
+            *broken |= u64::from(it != it.trunc());
+        }
     }
-    rest.iter().for_each(|&value| take(0, value));
     ColumnEnds {
         low: low.into_iter().fold(f64::INFINITY, f64::min),
         high: high.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        numbers: nan == [0; 8],
-        whole: broken == [0; 8],
+        numbers: nan == [0; LANES],
+        whole: broken == [0; LANES],
     }
 }
 
