@@ -24,10 +24,10 @@ AXIAL = {
 
 
 def driver_radius(ratio: Column) -> Column:
-    """Pitch radius of the driver in m, by Newton's steps from above, as many as f64 needs."""
+    """Pitch radius of the driver in m, by Newton's steps from above, as many as f64 needs (ratios from 0.2 to 5)."""
     radius = (LENGTH - 2 * CENTRE) / (np.pi * (1 + ratio))
     step, both = ratio - 1, np.pi * (1 + ratio)
-    for _ in range(6):
+    for _ in range(4):
         sine = step * radius / CENTRE
         lean = np.arcsin(sine)
         slope = both + 2 * lean * step

@@ -205,19 +205,35 @@ struct Search {
 // stands in the bound of its root.
 // Steps so small, relative to the place, are at the level of rounding: they end when they no longer shrink.
 const AT_ROUNDING: f32 = 1.2e-3;
+// Stands for the step before the first one, and for one that halved the bracket.
+const NO_STEP: f32 = 3e38;
 
 fn begin_search(low: f32, high: f32, start: f32) -> Search {
-    return Search(low, high, min(max(start, low), high), infinity(), false);
+    return Search(low, high, min(max(start, low), high), NO_STEP, false);
 }
 
 fn newton_step(search: Search, value: f32, slope: f32) -> Search {
+    return step_of(search, value, slope, false);
+}
+
+// The same of a smooth function: a step is about the square of the one before, times a number. The next one would be
+// moved * (moved / last)^2, which is not taken where it would be below rounding.
+fn smooth_newton_step(search: Search, value: f32, slope: f32) -> Search {
+    return step_of(search, value, slope, true);
+}
+
+fn step_of(search: Search, value: f32, slope: f32, is_smooth: bool) -> Search {
     let low = select(search.x, search.low, value > 0.0);
     let high = select(search.high, search.x, value > 0.0);
     let newton = search.x - value / slope;
-    let next = select(0.5 * (low + high), newton, newton >= low && newton <= high);
+    let is_newton = newton >= low && newton <= high;
+    let next = select(0.5 * (low + high), newton, is_newton);
     let moved = abs(next - search.x);
-    let done = moved == 0.0 || (moved <= AT_ROUNDING * abs(search.x) && moved >= 0.5 * search.last);
-    return Search(low, high, next, moved, done);
+    let shrunk = moved / search.last;
+    let is_near = is_newton && search.last <= 1e-3 * abs(search.x);
+    let no_more = is_smooth && is_near && moved * shrunk * shrunk <= 0.125 * ROUNDING * abs(search.x);
+    let done = moved == 0.0 || no_more || (moved <= AT_ROUNDING * abs(search.x) && moved >= 0.5 * search.last);
+    return Search(low, high, next, select(moved, NO_STEP, is_smooth && !is_newton), done);
 }
 
 // The root of an increasing function that f32 steps ended at, from the value and slope there: the exact function is within

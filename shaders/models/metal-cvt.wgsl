@@ -3,23 +3,22 @@
 fn prepare_driver_radius_near(
     largest_radius: f32,
     first_radius: f32,
-    ratio_less_one: f32,
-    centre_distance: f32,
-    n21: f32,
+    sine_per_radius: f32,
+    n24: f32,
     both_half_turns: f32,
     belt_length: f32,
 ) -> f32 {
     var search = begin_search(0.0, largest_radius, first_radius);
     for (var i = 0; i < NEWTON_STEPS && !search.done; i++) {
         let x = search.x;
-        let sine_of_lean = max(min(((ratio_less_one * x) / centre_distance), 1.0), (-1.0));
+        let sine_of_lean = (sine_per_radius * x);
         let lean = arc_sine(sine_of_lean);
-        let free = (n21 * sqrt(max(((1.0 - sine_of_lean) * (1.0 + sine_of_lean)), 0.0)));
-        let n39 = ((2.0 * lean) * ratio_less_one);
-        search = newton_step(
+        let chord = sqrt(max(((1.0 - sine_of_lean) * (1.0 + sine_of_lean)), 0.0)); // cos g
+        let straight = (n24 * (chord + (lean * sine_of_lean))); // 2 A (cos g + g sin g)
+        search = smooth_newton_step(
             search,
-            (((free + (both_half_turns * x)) + (n39 * x)) - belt_length),
-            (both_half_turns + n39),
+            ((straight + (both_half_turns * x)) - belt_length),
+            (both_half_turns + (n24 * (lean * sine_per_radius))),
         );
     }
     return search.x;
@@ -28,9 +27,8 @@ fn prepare_driver_radius_near(
 fn prepare_driver_radius_root(
     largest_radius: Real,
     first_radius: Real,
-    ratio_less_one: Real,
-    centre_distance: Real,
-    n21: Real,
+    sine_per_radius: Real,
+    n24: Real,
     both_half_turns: Real,
     belt_length: Real,
 ) -> Real {
@@ -38,39 +36,42 @@ fn prepare_driver_radius_root(
         prepare_driver_radius_near(
             largest_radius.value,
             first_radius.value,
-            ratio_less_one.value,
-            centre_distance.value,
-            n21.value,
+            sine_per_radius.value,
+            n24.value,
             both_half_turns.value,
             belt_length.value,
         ),
     );
-    let sine_of_lean = max_(min_(div(mul(ratio_less_one, x), centre_distance), constant(1.0)), constant(-1.0));
+    let sine_of_lean = mul(sine_per_radius, x);
     let lean = asin_(sine_of_lean);
-    let free = mul(n21, sqrt_(mul(sub(constant(1.0), sine_of_lean), add(constant(1.0), sine_of_lean))));
-    let n39 = mul(twice(lean), ratio_less_one);
+    let chord = sqrt_(mul(sub(constant(1.0), sine_of_lean), add(constant(1.0), sine_of_lean))); // cos g
+    let straight = mul(n24, add(chord, mul(lean, sine_of_lean))); // 2 A (cos g + g sin g)
     return root(
         x.value,
-        sub(add(add(free, mul(both_half_turns, x)), mul(n39, x)), belt_length),
-        add(both_half_turns, n39),
+        sub(add(straight, mul(both_half_turns, x)), belt_length),
+        add(both_half_turns, mul(n24, mul(lean, sine_per_radius))),
     );
 }
 
 fn prepare_slack_near(
     given_0: f32,
     given_1: f32,
-    highest_slack: f32,
-    n87: f32,
-    effective_friction: f32,
+    first_slack: f32,
+    n96: f32,
+    per_friction: f32,
     driven_wrap: f32,
-    aim: f32,
+    idle_force: f32,
 ) -> f32 {
-    var search = begin_search(given_0, given_1, highest_slack);
+    var search = begin_search(given_0, given_1, first_slack);
     for (var i = 0; i < NEWTON_STEPS && !search.done; i++) {
         let x = search.x;
-        let gain = (n87 / max(x, 1e-30)); // F1/F2 - 1
-        let idle = (driven_wrap - (ln_1p(gain) / effective_friction)); // theta_driven - theta_a
-        search = newton_step(search, ((x * idle) - aim), (idle + ((gain / (1.0 + gain)) / effective_friction)));
+        let gain = (n96 / x); // F1/F2 - 1
+        let idle = (driven_wrap - (ln_1p(gain) * per_friction)); // theta_driven - theta_a
+        search = smooth_newton_step(
+            search,
+            ((x * idle) - idle_force),
+            (idle + ((gain / (1.0 + gain)) * per_friction)),
+        );
     }
     return search.x;
 }
@@ -78,46 +79,57 @@ fn prepare_slack_near(
 fn prepare_slack_root(
     given_0: Real,
     given_1: Real,
-    highest_slack: Real,
-    n87: Real,
-    effective_friction: Real,
+    first_slack: Real,
+    n96: Real,
+    per_friction: Real,
     driven_wrap: Real,
-    aim: Real,
+    idle_force: Real,
 ) -> Real {
     let x = constant(
         prepare_slack_near(
             given_0.value,
             given_1.value,
-            highest_slack.value,
-            n87.value,
-            effective_friction.value,
+            first_slack.value,
+            n96.value,
+            per_friction.value,
             driven_wrap.value,
-            aim.value,
+            idle_force.value,
         ),
     );
-    let gain = div(n87, max_(x, Real(1e-30, 3.171078e-39))); // F1/F2 - 1
-    let idle = sub(driven_wrap, div(ln_1p_(gain), effective_friction)); // theta_driven - theta_a
+    let gain = div(n96, x); // F1/F2 - 1
+    let idle = sub(driven_wrap, mul(ln_1p_(gain), per_friction)); // theta_driven - theta_a
     return root(
         x.value,
-        sub(mul(x, idle), aim),
-        add(idle, div(div(gain, add(constant(1.0), gain)), effective_friction)),
+        sub(mul(x, idle), idle_force),
+        add(idle, mul(div(gain, add(constant(1.0), gain)), per_friction)),
     );
 }
 
 fn prepare(i: Inputs) -> Prepared {
     let ratio_less_one = sub(i.ratio, constant(1.0));
+    let sine_per_radius = div(ratio_less_one, i.centre_distance); // (R - 1)/A
     let both_half_turns = mul(Real(3.1415927, 8.7422784e-8), add(constant(1.0), i.ratio));
-    let n17 = abs_(ratio_less_one);
-    let largest_radius = div(i.centre_distance, max_(n17, Real(1e-9, 2.8281934e-17)));
-    let n21 = twice(i.centre_distance);
-    let length_margin = sub(i.belt_length, n21);
-    let first_radius = div(length_margin, both_half_turns);
+    let n20 = abs_(ratio_less_one);
+    let largest_radius = div(mul(constant(0.99999905), i.centre_distance), max_(n20, Real(1e-9, 2.8281934e-17)));
+    let n24 = twice(i.centre_distance);
+    let length_margin = sub(i.belt_length, n24);
+    let first_radius = div(
+        twice(length_margin),
+        add(
+            both_half_turns,
+            sqrt_(
+                max_(
+                    add(square(both_half_turns), mul(mul(scaled_(ratio_less_one, 4.0), sine_per_radius), length_margin)),
+                    constant(0.0),
+                ),
+            ),
+        ),
+    );
     let driver_radius = prepare_driver_radius_root(
         largest_radius,
         first_radius,
-        ratio_less_one,
-        i.centre_distance,
-        n21,
+        sine_per_radius,
+        n24,
         both_half_turns,
         i.belt_length,
     );
@@ -125,55 +137,69 @@ fn prepare(i: Inputs) -> Prepared {
     let lean_ = asin_(
         max_(min_(div(sub(driven_radius, driver_radius), i.centre_distance), constant(1.0)), constant(-1.0)),
     );
-    let n51 = twice(lean_);
-    let driver_wrap = sub(Real(3.1415927, 8.7422784e-8), n51);
-    let driven_wrap = add(Real(3.1415927, 8.7422784e-8), n51);
-    let n54 = half(i.groove_angle);
-    let groove_sine = sin_(n54);
-    let groove_cosine = cos_(n54);
+    let n60 = twice(lean_);
+    let driver_wrap = sub(Real(3.1415927, 8.7422784e-8), n60);
+    let driven_wrap = add(Real(3.1415927, 8.7422784e-8), n60);
+    let n63 = half(i.groove_angle);
+    let groove_sine = sin_(n63);
+    let groove_cosine = cos_(n63);
     let effective_friction = div(i.friction, groove_sine);
     let wedge_margin = sub(groove_cosine, mul(i.friction, groove_sine));
     let wedge = div(wedge_margin, add(mul(i.friction, groove_cosine), groove_sine)); // (1), (6)
     let driven_pull = exp_m1_(min_(mul(effective_friction, driven_wrap), constant(700.0))); // e - 1
-    let n67 = add(driven_pull, constant(2.0));
-    let driven_traction_limit = div(driven_pull, n67);
+    let n76 = add(driven_pull, constant(2.0));
+    let driven_traction_limit = div(driven_pull, n76);
     let pull = exp_m1_(min_(mul(effective_friction, driver_wrap), constant(700.0))); // e - 1
     let driver_traction_limit = div(pull, add(pull, constant(2.0)));
     let traction_limit = min_(driven_traction_limit, driver_traction_limit);
-    let n75 = select_(i.clamping_force, constant(1.0), i.traction);
-    let n76 = select_(i.traction, i.traction, traction_limit);
+    let n84 = select_(i.clamping_force, constant(1.0), i.traction);
+    let n85 = select_(i.traction, i.traction, traction_limit);
     let belt_force = div(i.torque, driver_radius); // (3), (14)
-    let n79 = twice(i.friction);
-    let slip_force = div(mul(belt_force, groove_cosine), n79); // P cos(a/2)/(2 mu)
+    let n88 = twice(i.friction);
+    let slip_force = div(mul(belt_force, groove_cosine), n88); // P cos(a/2)/(2 mu)
     let to_hold = sub(i.clamping_force, slip_force);
     let held = div(to_hold, i.clamping_force);
-    let aim = max_(div(scaled_(to_hold, 4.0), max_(wedge, Real(1e-9, 2.8281934e-17))), constant(0.0));
-    let n87 = twice(belt_force);
-    let n88 = div(n87, driven_pull);
-    let asymptote = div(add(aim, div(n87, effective_friction)), driven_wrap);
-    let highest_slack = max_(asymptote, n88);
+    let idle_force = max_(div(scaled_(to_hold, 4.0), max_(wedge, Real(1e-9, 2.8281934e-17))), constant(0.0)); // 2 F2 (theta_driven - theta_a)
+    let n96 = twice(belt_force);
+    let least_slack = max_(div(n96, driven_pull), Real(2e-30, 6.342155e-39));
+    let per_friction = div(constant(1.0), effective_friction); // 1/mu_e
+    let per_wrap = div(constant(1.0), driven_wrap); // 1/theta_driven
+    let n102 = mul(n96, per_friction);
+    let asymptote = mul(add(idle_force, n102), per_wrap);
+    let highest_slack = max_(asymptote, least_slack);
+    let n107 = mul(Real(0.6666667, 1.9868217e-8), n96);
+    let half_ = half(sub(asymptote, n107));
+    let first_slack = max_(
+        add(half_, sqrt_(add(square(half_), mul(n107, mul(add(idle_force, scaled_(n102, 0.25)), per_wrap))))),
+        least_slack,
+    );
     let slack = prepare_slack_root(
-        half(n88),
+        half(least_slack),
         twice(highest_slack),
-        highest_slack,
-        n87,
-        effective_friction,
+        first_slack,
+        n96,
+        per_friction,
         driven_wrap,
-        aim,
+        idle_force,
     ); // 2 F2
     let clamped_sum = select_(i.clamping_force, add(slack, belt_force), constant(1.0));
-    let traction = select_(i.clamping_force, div(belt_force, clamped_sum), n76);
-    let slack_share = select_(i.clamping_force, div(slack, clamped_sum), sub(constant(1.0), n76));
+    let traction = select_(i.clamping_force, div(belt_force, clamped_sum), n85);
+    let slack_share = select_(i.clamping_force, div(slack, clamped_sum), sub(constant(1.0), n85));
     let arc = min_(div(ln_1p_(div(twice(traction), slack_share)), effective_friction), driven_wrap); // (12)
-    let active_arc = select_(n75, arc, min_(driven_wrap, driver_wrap));
+    let active_arc = select_(n84, arc, min_(driven_wrap, driver_wrap));
     let smaller_radius = min_(driver_radius, driven_radius);
     let free_radius = div(i.belt_length, Real(6.2831855, 1.7484557e-7)); // r0
-    let active_part = mul(div(traction, n79), groove_cosine);
-    let n129 = add(constant(1.0), traction);
-    let n131 = mul(scaled_(n129, 0.25), driver_wrap);
-    let driver_axial_coefficient = mul(n131, wedge);
-    let n134 = mul(scaled_(slack_share, 0.25), sub(driven_wrap, active_arc));
-    let driven_axial_coefficient = add(mul(n134, wedge), active_part);
+    let idle_share = select_(
+        i.clamping_force,
+        div(idle_force, clamped_sum),
+        mul(slack_share, sub(driven_wrap, active_arc)),
+    );
+    let active_part = mul(div(traction, n88), groove_cosine);
+    let n156 = add(constant(1.0), traction);
+    let n158 = mul(scaled_(n156, 0.25), driver_wrap);
+    let driver_axial_coefficient = mul(n158, wedge);
+    let n160 = scaled_(idle_share, 0.25);
+    let driven_axial_coefficient = add(mul(n160, wedge), active_part);
     let unsupported = div(groove_cosine, groove_sine); // 1/tan(a/2)
     let belt_speed = mul(driver_radius, i.driver_speed);
     var p: Prepared;
@@ -185,12 +211,12 @@ fn prepare(i: Inputs) -> Prepared {
     p.traction_limit = traction_limit;
     p.driven_traction_limit = driven_traction_limit;
     p.driver_traction_limit = driver_traction_limit;
-    p.slip_margin = select_(n75, sub(constant(1.0), div(traction, traction_limit)), constant(0.0));
+    p.slip_margin = select_(n84, sub(constant(1.0), div(traction, traction_limit)), constant(0.0));
     p.active_arc = active_arc;
     p.driver_axial_coefficient = driver_axial_coefficient;
     p.driven_axial_coefficient = driven_axial_coefficient;
-    p.driver_upper_coefficient = mul(n131, unsupported);
-    p.driven_upper_coefficient = add(mul(n134, unsupported), active_part);
+    p.driver_upper_coefficient = mul(n158, unsupported);
+    p.driven_upper_coefficient = add(mul(n160, unsupported), active_part);
     p.thrust_ratio = div(driver_axial_coefficient, driven_axial_coefficient);
     p.utilisation = select_(
         i.clamping_force,
@@ -204,9 +230,9 @@ fn prepare(i: Inputs) -> Prepared {
     p.curvature = sub(div(constant(1.0), smaller_radius), div(constant(1.0), free_radius));
     p.smaller_radius = smaller_radius;
     p.free_ratio = div(free_radius, sub(free_radius, smaller_radius));
-    p.printed_pull = mul(div(slack_share, n129), driven_pull);
+    p.printed_pull = mul(div(slack_share, n156), driven_pull);
     p.entry_compression = div(
-        mul(sub(traction, driven_traction_limit), n67),
+        mul(sub(traction, driven_traction_limit), n76),
         twice(select_(neg(traction), constant(1.0), traction)),
     );
     p.belt_speed = belt_speed;
@@ -214,7 +240,7 @@ fn prepare(i: Inputs) -> Prepared {
     p.length_margin = length_margin;
     p.root_margin = sub(
         mul(mul(Real(6.2831855, 1.7484557e-7), i.centre_distance), max_(i.ratio, constant(1.0))),
-        mul(i.belt_length, n17),
+        mul(i.belt_length, n20),
     );
     p.overlap_margin = sub(sub(i.centre_distance, driver_radius), driven_radius);
     p.wedge_margin = wedge_margin;

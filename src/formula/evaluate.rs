@@ -7,7 +7,7 @@ use super::function::Function;
 use super::scope::{MeasuredCurve, Scope, slope};
 use super::typed::{IfTest, MOST_PARAMETERS, Need, Typed};
 use super::value::{LARGEST_EXPONENT, Value, both};
-use crate::real::Real;
+use crate::real::{Real, Smoothness};
 
 /// The numbers that a formula reads.
 pub(super) struct SlotValues<'a, R> {
@@ -158,7 +158,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
                 let at = self.of(of, place);
                 self.curve(&place.around.curves[*number], at, *need, place)
             }
-            Typed::Root(parts, first, slots, need) => self.root(parts, first.as_deref(), slots, *need, place),
+            Typed::Root(parts, first, slots, need, smoothness) => self.root(parts, (first.as_deref(), *smoothness), slots, *need, place),
         }
     }
 
@@ -260,7 +260,14 @@ impl<R: Real> TreeEvaluation<'_, R> {
     }
 
     #[inline(never)]
-    fn root(&mut self, parts: &[Typed; 3], first: Option<&Typed>, slots: &[usize], need: usize, place: EvaluationPlace<'_, R>) -> Value<R> {
+    fn root(
+        &mut self,
+        parts: &[Typed; 3],
+        (first, smoothness): (Option<&Typed>, Smoothness),
+        slots: &[usize],
+        need: usize,
+        place: EvaluationPlace<'_, R>,
+    ) -> Value<R> {
         let zero = R::constant(0.0);
         let (from, to) = (self.of(&parts[0], place), self.of(&parts[1], place));
         let mut parameters = [zero; MOST_PARAMETERS];
@@ -279,7 +286,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
         let end = from.value.max(to.value);
         let first = first.map(|first| self.of(first, place));
         let start = first.map_or_else(|| (from.value + end) * R::constant(0.5), |first| first.value);
-        let root = R::monotone_root((from.value, end), start, parameters, |parameters, x| {
+        let root = R::monotone_root((from.value, end), start, smoothness, parameters, |parameters, x| {
             let result = function(parameters, Value { slope: Some(R::constant(1.0)), ..Value::fixed(x) });
             (result.value, result.slope.unwrap_or(zero))
         });

@@ -28,6 +28,14 @@ pub(super) enum Function {
     Default,
 }
 
+impl Function {
+    /// Has it corners or jumps?
+    pub(super) fn has_corners(self) -> bool {
+        use Function::{Abs, Atan2, Ceil, Clamp, Default, Floor, Hypot, Max, Min, Round};
+        matches!(self, Min | Max | Abs | Clamp | Round | Floor | Ceil | Default | Hypot | Atan2)
+    }
+}
+
 /// What the arguments of a function may measure, and what its value does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -1,6 +1,7 @@
 //! A formula that has been checked: names are slots, units are factors, and what can fail has a number.
 
 use super::function::Function;
+use crate::real::Smoothness;
 
 /// Most names that the expression of a root may read.
 pub(super) const MOST_PARAMETERS: usize = 16;
@@ -36,9 +37,9 @@ pub(super) enum Typed {
     If(IfTest, Box<[Typed; 4]>),
     /// A curve by number, with the condition that the argument lies between its ends.
     Curve(usize, Box<Typed>, usize),
-    /// From, to and expression, where the search starts if that is said, the slots of its parameters, and the condition that there is
-    /// a root.
-    Root(Box<[Typed; 3]>, Option<Box<Typed>>, Vec<usize>, usize),
+    /// From, to and expression, where the search starts if that is said, the slots of its parameters, the condition that there is a root,
+    /// and what is known of the expression.
+    Root(Box<[Typed; 3]>, Option<Box<Typed>>, Vec<usize>, usize, Smoothness),
 }
 
 impl Typed {
@@ -48,6 +49,35 @@ impl Typed {
             Self::Constant(value) => Some(*value),
             _ => None,
         }
+    }
+
+    fn parts(&self) -> Vec<&Self> {
+        match self {
+            Self::Constant(_) | Self::Slot(_) | Self::Parameter(_) | Self::Unknown => Vec::new(),
+            Self::Negative(of) | Self::WholePower(of, ..) | Self::Curve(_, of, _) => vec![of],
+            Self::Sum(parts) | Self::Difference(parts) | Self::Product(parts) | Self::Quotient(parts, _) | Self::Power { parts, .. } => {
+                parts.iter().collect()
+            }
+            Self::Apply(_, parts, _) => parts.iter().collect(),
+            Self::If(_, parts) => parts.iter().collect(),
+            Self::Root(parts, start, ..) => parts.iter().chain(start.as_deref()).collect(),
+        }
+    }
+
+    fn reads_unknown(&self) -> bool {
+        matches!(self, Self::Unknown) || self.parts().into_iter().any(Self::reads_unknown)
+    }
+
+    /// Of the expression of a root: is it free of corners and jumps over the unknown?
+    pub(super) fn smoothness(&self) -> Smoothness {
+        let has_corners = match self {
+            Self::If(..) | Self::Curve(..) | Self::Root(..) => true,
+            Self::Apply(function, ..) => function.has_corners(),
+            _ => false,
+        };
+        let is_smooth = |part: &Self| part.smoothness() == Smoothness::Smooth;
+        let smooth = !self.reads_unknown() || (!has_corners && self.parts().into_iter().all(is_smooth));
+        if smooth { Smoothness::Smooth } else { Smoothness::Unknown }
     }
 }
 

@@ -3,7 +3,7 @@
 //! Transcendental functions of f64 come from the pure-Rust `libm`, never from the system, so that f64 gives the same bits on
 //! every machine; those of f32 are the shaders' own. `min` and `max` are written as comparisons because that is what one vector instruction does.
 
-use super::{Real, bracketed_newton, functions};
+use super::{Real, Smoothness, bracketed_newton, functions};
 
 macro_rules! float {
     ($float:ident, $exp_m1:path, $ln_1p:path, $sin:path, $cos:path, $asin:path) => {
@@ -89,11 +89,12 @@ macro_rules! float {
             fn monotone_root<const P: usize>(
                 bracket: (Self, Self),
                 start: Self,
+                smoothness: Smoothness,
                 parameters: [Self; P],
                 function: impl Fn([Self; P], Self) -> (Self, Self),
             ) -> Self {
                 let bracket = (f64::from(bracket.0), f64::from(bracket.1));
-                let root = bracketed_newton(bracket, f64::from(start), f64::from($float::EPSILON), |x| {
+                let root = bracketed_newton(bracket, f64::from(start), f64::from($float::EPSILON), smoothness, |x| {
                     let (value, slope) = function(parameters, x as $float);
                     (f64::from(value), f64::from(slope))
                 });

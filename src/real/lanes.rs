@@ -3,7 +3,7 @@
 //! Every operation does to each lane exactly what `f64` does, in the same order, so a lane has the same bits as the scalar
 //! reference. The loops over the lanes have a constant length and no branch, which the compiler turns into vector code.
 
-use super::{Real, bracketed_newton};
+use super::{Real, Smoothness, bracketed_newton};
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -156,11 +156,12 @@ impl Real for Lanes {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
         Self(from_fn(|lane| {
-            bracketed_newton((bracket.0.0[lane], bracket.1.0[lane]), start.0[lane], f64::EPSILON, |x| {
+            bracketed_newton((bracket.0.0[lane], bracket.1.0[lane]), start.0[lane], f64::EPSILON, smoothness, |x| {
                 let (value, slope) = function(parameters, Self::splat(x));
                 (value.0[lane], slope.0[lane])
             })

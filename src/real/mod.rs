@@ -17,7 +17,7 @@ pub use functions::FUNCTION_ULP;
 pub use lanes::{LANES, Lanes};
 pub use loops::{Loop, Place};
 pub(crate) use root::{Lane, MOST_STEPS, bracketed_newton, has_ended, newton_step, root_step};
-pub use root::{ROOT_PARAMETERS, RootFunction, RootSearch, RootStep};
+pub use root::{ROOT_PARAMETERS, RootFunction, RootSearch, RootStep, Smoothness};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -136,18 +136,20 @@ pub trait Real:
     fn is_zero(self) -> bool;
     /// The root of an increasing function, between the ends of `bracket`, found from `start`.
     ///
-    /// `function` takes the parameters that it depends on and the place, and returns value and slope. If there is no root in the bracket
+    /// `function` takes the parameters that it depends on and the place, and returns value and slope; `smoothness` says when the search may
+    /// end. If there is no root in the bracket
     /// the result is some number inside it: the caller states the condition under which a root exists as a status of its own.
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self;
     /// The same of a function that has a name: who looks for many roots at a time may have it compiled for that.
     #[inline(always)]
     fn root_of<F: RootFunction>(bracket: (Self, Self), start: Self, parameters: [Self; ROOT_PARAMETERS]) -> Self {
-        Self::monotone_root(bracket, start, parameters, F::at)
+        Self::monotone_root(bracket, start, Smoothness::Smooth, parameters, F::at)
     }
 
     /// The exponential function. In f32 it has no error bound beyond about 87 on either side of zero; in f64 it is infinite above 709, and

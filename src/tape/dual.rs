@@ -4,7 +4,7 @@
 //! of designs, and so tell where an output surely grows with an input. Most values depend on few of the directions: what is exactly
 //! zero is not computed with.
 
-use crate::real::Real;
+use crate::real::{Real, Smoothness};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its derivatives in `N` directions.
@@ -233,12 +233,14 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
         let root = T::monotone_root(
             (bracket.0.value, bracket.1.value),
             start.value,
+            smoothness,
             parameters.map(|parameter| parameter.value),
             |parameters, x| {
                 let (value, slope) = function(parameters.map(Self::fixed), Self::fixed(x));
@@ -269,7 +271,7 @@ mod tests {
 
     /// A formula with every kind of operation, of two numbers.
     fn formula<R: Real>(x: R, y: R) -> R {
-        let root = R::monotone_root((R::constant(0.0), R::constant(10.0)), x, [x, y], |[x, y], at| {
+        let root = R::monotone_root((R::constant(0.0), R::constant(10.0)), x, Smoothness::Unknown, [x, y], |[x, y], at| {
             (at * at * at - x - y, R::constant(3.0) * at * at)
         });
         let waves = (x * y).sin() + (x / y).cos() - (y / R::constant(4.0)).asin();

@@ -6,7 +6,7 @@
 //! [`FUNCTION_ULP`] ULP of their own error.
 //! Bounds are carried in f64, where their own rounding is nine orders of magnitude below what they measure.
 
-use crate::real::{FUNCTION_ULP, Real, bracketed_newton};
+use crate::real::{FUNCTION_ULP, Real, Smoothness, bracketed_newton};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Half an ULP of an f32, relative: one correctly rounded operation.
@@ -190,12 +190,13 @@ impl Real for RunningError {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
         let ends = (f64::from(bracket.0.value), f64::from(bracket.1.value));
         let at = |x: f64| function(parameters, Self { value: round(x), bound: 0.0 });
-        let root = round(bracketed_newton(ends, f64::from(start.value), f64::from(f32::EPSILON), |x| {
+        let root = round(bracketed_newton(ends, f64::from(start.value), f64::from(f32::EPSILON), smoothness, |x| {
             let (value, slope) = at(x);
             (f64::from(value.value), f64::from(slope.value))
         }));

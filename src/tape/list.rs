@@ -216,7 +216,7 @@ impl List {
         let [low, high, start] = [root.bracket.0, root.bracket.1, root.start].map(|node| slots[node as usize]);
         // The function is asked again and again, but by one caller at a time.
         let slots = RefCell::new(slots);
-        R::monotone_root((low, high), start, [], |[], x| {
+        R::monotone_root((low, high), start, root.smoothness, [], |[], x| {
             let mut slots = slots.borrow_mut();
             slots[root.argument as usize] = x;
             for &node in inner {

@@ -40,7 +40,7 @@ pub use settled::{Onwards, SettledStages, StageLists};
 pub use stages::{Fields, First, Reads, Recordable, Second, Whole};
 pub use steps::{Step, Steps};
 
-use crate::real::{ROOT_PARAMETERS, Real, RootStep};
+use crate::real::{ROOT_PARAMETERS, Real, RootStep, Smoothness};
 
 /// Number of an operation in its list.
 pub type Node = u32;
@@ -176,6 +176,8 @@ pub struct Root {
     pub value: Node,
     /// The function's slope.
     pub slope: Node,
+    /// What is known of the function.
+    pub smoothness: Smoothness,
     /// The function, where it has been compiled for many searches at a time.
     pub function: Option<KnownFunction>,
 }
@@ -220,13 +222,13 @@ impl Root {
     /// The same of other nodes.
     #[must_use]
     pub fn map(self, at: impl Fn(Node) -> Node) -> Self {
-        let Self { bracket, start, argument, value, slope, function } = self;
+        let Self { bracket, start, argument, value, slope, smoothness, function } = self;
         let parameter = |it| match it {
             RootParameter::Number(_) => it,
             RootParameter::Node(node) => RootParameter::Node(at(node)),
         };
         let function = function.map(|it| KnownFunction { parameters: it.parameters.map(parameter), ..it });
         let bracket = (at(bracket.0), at(bracket.1));
-        Self { bracket, start: at(start), argument: at(argument), value: at(value), slope: at(slope), function }
+        Self { bracket, start: at(start), argument: at(argument), value: at(value), slope: at(slope), smoothness, function }
     }
 }

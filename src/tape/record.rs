@@ -1,7 +1,7 @@
 //! Recording: a formula runs on names of numbers, and every operation that it asks for is written down.
 
 use super::{Binary, Fields, FormulaTable, KnownFunction, Node, Operation, Rolled, RolledLoop, Root, RootParameter, Store, Unary};
-use crate::real::{Loop, Place, ROOT_PARAMETERS, Real, RootFunction, bracketed_newton, chosen_at};
+use crate::real::{Loop, Place, ROOT_PARAMETERS, Real, RootFunction, Smoothness, bracketed_newton, chosen_at};
 use rustc_hash::FxHashMap as HashMap;
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -357,6 +357,7 @@ impl Real for Trace {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
@@ -364,24 +365,24 @@ impl Real for Trace {
         let index = u8::try_from(number).expect("a formula has few roots");
         let argument = Self(with(|recorder| recorder.push(Operation::Argument(index))));
         // Taken at once, so that a root within this function gets a number of its own.
-        let unknown = Root { bracket: (0, 0), start: 0, argument: argument.0, value: 0, slope: 0, function: None };
+        let unknown = Root { bracket: (0, 0), start: 0, argument: argument.0, value: 0, slope: 0, smoothness, function: None };
         with(|recorder| recorder.roots.push(unknown));
         let (value, slope) = function(parameters, argument);
         if let (Some(low), Some(high), Some(first)) = (bracket.0.known(), bracket.1.known(), start.known()) {
-            let root = with(|recorder| recorder.constant_root(argument.0, value.0, slope.0, (low, high), first));
+            let root = with(|recorder| recorder.constant_root(argument.0, value.0, slope.0, (low, high), first, smoothness));
             if let Some(root) = root {
                 return Self::constant(root);
             }
         }
         let bracket = (bracket.0.0, bracket.1.0);
-        let root = Root { bracket, start: start.0, argument: argument.0, value: value.0, slope: slope.0, function: None };
+        let root = Root { bracket, start: start.0, argument: argument.0, value: value.0, slope: slope.0, smoothness, function: None };
         with(|recorder| {
             recorder.roots[number] = root;
             Self(recorder.push(Operation::Root(index)))
         })
     }
     fn root_of<F: RootFunction>(bracket: (Self, Self), start: Self, parameters: [Self; ROOT_PARAMETERS]) -> Self {
-        let root = Self::monotone_root(bracket, start, parameters, F::at);
+        let root = Self::monotone_root(bracket, start, Smoothness::Smooth, parameters, F::at);
         let parameters = parameters.map(|it| it.known().map_or(RootParameter::Node(it.0), RootParameter::Number));
         let function = F::in_columns().map(|step| KnownFunction { step, parameters });
         with(|recorder| {
@@ -421,7 +422,15 @@ fn rolled<const S: usize>(over: Loop<Trace>, state: [Trace; S], mut body: impl F
 
 impl Recording {
     /// The root of a function of its argument alone.
-    fn constant_root(&self, argument: Node, value: Node, slope: Node, bracket: (f64, f64), start: f64) -> Option<f64> {
+    fn constant_root(
+        &self,
+        argument: Node,
+        value: Node,
+        slope: Node,
+        bracket: (f64, f64),
+        start: f64,
+        smoothness: Smoothness,
+    ) -> Option<f64> {
         let mut needed = vec![false; self.operations.len()];
         needed[value as usize] = true;
         needed[slope as usize] = true;
@@ -434,7 +443,7 @@ impl Recording {
             }
         }
         let mut slots = vec![0.0; self.operations.len()];
-        Some(bracketed_newton(bracket, start, f64::EPSILON, |x| {
+        Some(bracketed_newton(bracket, start, f64::EPSILON, smoothness, |x| {
             for node in (0..slots.len()).filter(|&node| needed[node]) {
                 slots[node] = match self.operations[node] {
                     Operation::Constant(bits) => f64::from_bits(bits),

@@ -2,7 +2,7 @@
 
 use super::columns::{ColumnValue, NodeColumns};
 use super::{KnownFunction, List, ListRoot, Node, Operation, RootParameter};
-use crate::real::{MOST_STEPS, ROOT_PARAMETERS, RootSearch, has_ended, newton_step};
+use crate::real::{MOST_STEPS, ROOT_PARAMETERS, RootSearch, Smoothness, has_ended, newton_step};
 use multiversion::multiversion;
 
 /// Room for the roots of a list.
@@ -67,13 +67,13 @@ impl RootLanes {
     }
 
     /// Takes a step in each lane from where its function was asked; the number of lanes that go on.
-    fn step(&mut self, asked: &[f64], value: ColumnValue<'_>, slope: ColumnValue<'_>) -> usize {
+    fn step(&mut self, asked: &[f64], value: ColumnValue<'_>, slope: ColumnValue<'_>, smoothness: Smoothness) -> usize {
         let count = asked.len();
         let value = of_all(value, &mut self.value, count);
         let slope = of_all(slope, &mut self.slope, count);
         let RootSearch { low, high, last_step, .. } = self.now.read();
         let next = self.next.written(count);
-        let left = steps(asked, value, slope, low, high, last_step, next.x, next.low, next.high, next.last_step);
+        let left = steps(asked, value, slope, low, high, last_step, next.x, next.low, next.high, next.last_step, smoothness);
         std::mem::swap(&mut self.now, &mut self.next);
         left
     }
@@ -150,6 +150,7 @@ fn steps(
     next_low: &mut [f64],
     next_high: &mut [f64],
     next_last: &mut [f64],
+    smoothness: Smoothness,
 ) -> usize {
     let count = asked.len();
     let (value, slope, x) = (&value[..count], &slope[..count], &mut x[..count]);
@@ -158,7 +159,7 @@ fn steps(
     let mut left = 0_u64;
     for lane in 0..count {
         let at = RootSearch { x: asked[lane], low: low[lane], high: high[lane], last_step: last_step[lane] };
-        let next = newton_step(at, value[lane], slope[lane], f64::EPSILON);
+        let next = newton_step(at, value[lane], slope[lane], f64::EPSILON, smoothness);
         (x[lane], next_low[lane], next_high[lane], next_last[lane]) = (next.x, next.low, next.high, next.last_step);
         left += u64::from(!has_ended(next.last_step));
     }
@@ -292,7 +293,7 @@ impl RootColumns {
                 numbers.compute(list, node, each);
             }
             let ColumnValue::Each(asked) = numbers.value(root.argument, each) else { unreachable!("it differs between lanes") };
-            let left = lanes.step(asked, numbers.value(root.value, each), numbers.value(root.slope, each));
+            let left = lanes.step(asked, numbers.value(root.value, each), numbers.value(root.slope, each), root.smoothness);
             if lanes.have_ended(column, left) {
                 return;
             }

@@ -2,12 +2,14 @@
 
 use super::{ColumnValue, Dual, Interval, Known, LIST_CHUNK, List, ListColumns, Loops, Operation, Recording, RunningError, Set};
 use crate::models;
-use crate::real::{LANES, Lanes, ROOT_PARAMETERS, Real, RootFunction, RootSearch, RootStep, root_step};
+use crate::real::{LANES, Lanes, ROOT_PARAMETERS, Real, RootFunction, RootSearch, RootStep, Smoothness, newton_step, root_step};
 
 /// The cube root of 2, on every instance that has a value.
 fn cube_root<R: Real>() -> R {
     let two = R::constant(2.0);
-    R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), [two], |[two], x| (x * x * x - two, R::constant(3.0) * x * x))
+    R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), Smoothness::Unknown, [two], |[two], x| {
+        (x * x * x - two, R::constant(3.0) * x * x)
+    })
 }
 
 #[test]
@@ -26,14 +28,16 @@ fn the_root_of_a_monotone_function_is_found_to_rounding() {
 
 #[test]
 fn without_a_root_the_result_stays_inside_the_bracket() {
-    let x = f64::monotone_root((1.0, 3.0), 2.0, [1.0], |[one], x| (x + one, one));
+    let x = f64::monotone_root((1.0, 3.0), 2.0, Smoothness::Unknown, [1.0], |[one], x| (x + one, one));
     assert!((1.0..=3.0).contains(&x), "{x}");
 }
 
 /// The root of `x^2/2 = half_square`: the slope is the argument itself.
 fn of_half_square<R: Real>(half_square: R) -> R {
     let ten = R::constant(10.0);
-    R::monotone_root((R::constant(0.0), ten), ten, [half_square], |[half_square], x| (R::constant(0.5) * x * x - half_square, x))
+    R::monotone_root((R::constant(0.0), ten), ten, Smoothness::Unknown, [half_square], |[half_square], x| {
+        (R::constant(0.5) * x * x - half_square, x)
+    })
 }
 
 #[test]
@@ -137,7 +141,10 @@ fn a_compiled_function_tells_that_it_takes_a_rare_way() {
     };
     let (left, next) = taken(0.2).expect("nothing is rare");
     let (value, slope) = Mixed::at([1.0; ROOT_PARAMETERS], 0.2);
-    assert_eq!((left, next[5]), (9, 0.2 - value / slope));
+    let at = RootSearch { x: 0.2, low: 0.0, high: 1.0, last_step: 1.0 };
+    let expected = newton_step(at, value, slope, f64::EPSILON, Smoothness::Smooth).x;
+    assert_eq!((left, next[5]), (9, expected));
+    assert!((expected - (0.2 - value / slope)).abs() < 1e-9, "{expected}");
     assert_eq!(taken(0.6), None);
 }
 

@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use beltspace::models::{Condition, Fields, Formula, Input, Model, Output, Range, Set, Worse};
-use beltspace::real::Real;
+use beltspace::real::{Real, Smoothness};
 use beltspace::record;
 use beltspace::units::NONE;
 use std::sync::Arc;
@@ -31,9 +31,10 @@ impl Formula for EveryFunction {
     fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], _wanted: Set, outputs: &mut [R]) {
         let (i, p) = (Inputs::read(inputs), Prepared::<R>::shared(prepared));
         // The function of this root has a floor of its own, which is zero in the whole bracket: in the search it stands in plain f32.
-        let root = R::monotone_root((R::constant(1.0), R::constant(1000.0)), R::constant(10.0), [p.whole], |[whole], at| {
-            (at + (at / R::constant(1048576.0)).floor() - whole, R::constant(1.0))
-        });
+        let root =
+            R::monotone_root((R::constant(1.0), R::constant(1000.0)), R::constant(10.0), Smoothness::Unknown, [p.whole], |[whole], at| {
+                (at + (at / R::constant(1048576.0)).floor() - whole, R::constant(1.0))
+            });
         Outputs {
             exp: i.exponent.exp(),
             ln: i.positive.ln(),

@@ -489,7 +489,8 @@ impl<'s, 'e> Checker<'s, 'e> {
         self.roots += 1;
         let need = self.need(reason::NO_ROOT, false);
         let parts = Box::new([&from, &to, &function].map(|part| part.typed.clone()));
-        let typed = Typed::Root(parts, start.as_ref().map(|part| Box::new(part.typed.clone())), parameters, need);
+        let typed =
+            Typed::Root(parts, start.as_ref().map(|part| Box::new(part.typed.clone())), parameters, need, function.typed.smoothness());
         let of: Vec<&CheckedTree> = [&from, &to, &function].into_iter().chain(&start).collect();
         // The unknown stays within.
         CheckedTree { varies: false, ..CheckedTree::new(typed, kind, false, &of) }

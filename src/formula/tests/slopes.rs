@@ -1,7 +1,9 @@
 //! The slopes with which roots are found.
 
 use super::super::evaluate::at;
+use super::super::typed::Typed;
 use super::*;
+use crate::real::Smoothness;
 
 #[test]
 fn slopes_are_those_of_difference_quotients() {
@@ -57,4 +59,31 @@ fn slopes_are_those_of_difference_quotients() {
         }
     }
     assert!(compared > 150, "{compared}");
+}
+
+#[test]
+fn an_expression_is_smooth_where_nothing_of_the_unknown_has_a_corner() {
+    let scope = scope();
+    let is_smooth = |body: &str| {
+        let text = format!("root(r, 0, 10, {body})");
+        let formulas = Formulas::new(&scope, &sources(&[("it", &text)])).unwrap_or_else(|problems| panic!("{text}: {}", problems[0]));
+        let Typed::Root(.., smoothness) = &formulas.all()[0].typed else { panic!("{text} is no root") };
+        *smoothness == Smoothness::Smooth
+    };
+    for body in
+        ["r^3 - 2", "exp_m1(r) - 1 / r", "sqrt(r) * asin(r / 11) / 1[rad] - max(2, 3) * r", "r + floor(3.5) * r", "ln_1p(r) - abs(-2)"]
+    {
+        assert!(is_smooth(body), "{body}");
+    }
+    for body in [
+        "max(r, 2 * r - 1) - 3",
+        "r + exp(min(r, 1))",
+        "r - 2 + abs(r - 1) / 2",
+        "clamp(r, 1, 2) + r",
+        "if(r < 1, r, 2 * r - 1) - 2",
+        "r + slip(r * 8[m/s])",
+        "r + default(r, 1)",
+    ] {
+        assert!(!is_smooth(body), "{body}");
+    }
 }

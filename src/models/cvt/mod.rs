@@ -124,18 +124,29 @@ pub fn printed_torque_coefficient<R: Real>(pull: R, strength: R, elastic_modulus
     pull * strength.squared() / elastic_modulus * free_ratio * width / R::constant(2.0)
 }
 
+/// The largest sine of a lean that is looked at, 1 - 2^-20: pulleys that would need more overlap.
+const LARGEST_SINE: f64 = 1.0 - 1.0 / (1 << 20) as f64;
+
 /// Pitch radius of the driver of an open belt: the root of `2 A cos g + pi (1 + R) r + 2 g (R - 1) r = L`, `sin g = (R - 1) r/A`.
 ///
-/// The length is increasing and convex in r, and the start is at or above the root, so Newton's steps never overshoot.
+/// The length is increasing and convex in r. The search starts at the root of its terms up to the second order,
+/// `2 A + pi (1 + R) r + (R - 1)^2 r^2/A = L`; as those left out are above zero, this is at or above the root that is looked for, and Newton's
+/// steps never overshoot.
 fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
-    let [one, two, pi] = [1.0, 2.0, PI].map(R::constant);
+    let [one, two, four, pi] = [1.0, 2.0, 4.0, PI].map(R::constant);
     let Drive { ratio, belt_length, centre_distance, .. } = *belt;
     let step = (ratio - one).named("ratio_less_one", "");
+    let lean = (step / centre_distance).named("sine_per_radius", "(R - 1)/A");
     let both = (pi * (one + ratio)).named("both_half_turns", "");
-    // Beyond A/|R - 1| one pulley would lie inside the other. Equal pulleys have no such end: any large one serves.
-    let largest = (centre_distance / step.abs().max(R::constant(1e-9))).named("largest_radius", "");
-    let start = ((belt_length - two * centre_distance) / both).named("first_radius", "");
-    R::root_of::<BeltLength>((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance])
+    // At A/|R - 1| one pulley would begin to lie inside the other; a little less, so that the sine of the lean stays below 1. Equal pulleys
+    // have no such end: any large one serves.
+    let largest = R::constant(LARGEST_SINE) * centre_distance / step.abs().max(R::constant(1e-9));
+    // Of a belt that is too short the start is below zero, whatever the square root.
+    let chords = belt_length - two * centre_distance;
+    let square = both.squared() + four * step * lean * chords;
+    let start = (two * chords / (both + square.max(R::constant(0.0)).sqrt())).named("first_radius", "");
+    let largest = largest.named("largest_radius", "");
+    R::root_of::<BeltLength>((R::constant(0.0), largest), start, [lean, both, belt_length, centre_distance])
 }
 
 /// The length that a belt has with this radius of the driver, less the belt's own.
@@ -145,11 +156,13 @@ impl RootFunction for BeltLength {
     #[inline(always)]
     fn at<R: Real>(parameters: [R; ROOT_PARAMETERS], radius: R) -> (R, R) {
         let [one, two] = [1.0, 2.0].map(R::constant);
-        let [step, both, belt_length, centre_distance] = parameters;
-        let sine_of_lean = (step * radius / centre_distance).min(one).max(-one).named("sine_of_lean", "");
+        let [sine_per_radius, both, belt_length, centre_distance] = parameters;
+        let sine_of_lean = (sine_per_radius * radius).named("sine_of_lean", "");
         let lean = sine_of_lean.asin().named("lean", "");
-        let free = (two * centre_distance * ((one - sine_of_lean) * (one + sine_of_lean)).sqrt()).named("free", "");
-        (free + both * radius + two * lean * step * radius - belt_length, both + two * lean * step)
+        let chord = ((one - sine_of_lean) * (one + sine_of_lean)).sqrt().named("chord", "cos g");
+        // (R - 1) r is A sin g.
+        let straight = (two * centre_distance * (chord + lean * sine_of_lean)).named("straight", "2 A (cos g + g sin g)");
+        (straight + both * radius - belt_length, both + two * centre_distance * (lean * sine_per_radius))
     }
 
     fn in_columns() -> Option<RootStep> {
@@ -160,16 +173,23 @@ impl RootFunction for BeltLength {
 /// Twice the slack side's force at which the driven pulley is pressed with `clamping_force`: the root v = F1 + F2 - P of
 /// `v/4 (theta_driven - theta_a) k + P cos(a/2)/(2 mu) = clamping_force` with `theta_a = log(1 + 2 P/v)/mu_e`, (2) and (12).
 ///
-/// `target` is `4 (clamping_force - P cos(a/2)/(2 mu))/k`, `least` the v at which the whole wrap is active. The left side is increasing
-/// and convex in v and lies above its asymptote, at whose root the search starts: Newton's steps never overshoot. Without a torque that
-/// start is the root, so the bracket goes beyond it; it also begins below the root of a belt that just holds, so that boxes of designs next
-/// to slip surely have one. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
-fn clamped_slack<R: Real>(belt_force: R, target: R, driven_wrap: R, effective_friction: R, least: R) -> R {
-    let two = R::constant(2.0);
-    let asymptote = ((target + two * belt_force / effective_friction) / driven_wrap).named("asymptote", "");
+/// `pull` is 2 P, `target` is `4 (clamping_force - P cos(a/2)/(2 mu))/k`, and `least`, above zero, the v at which the whole wrap is active.
+/// The left side is increasing and convex in v and lies above its asymptote, at whose root h the bracket would end; without a torque that
+/// is the root, so the bracket goes beyond it. It also begins below the root of a belt that just holds, so that boxes of designs next to
+/// slip surely have one. The search starts where `v log(1 + 2 P/v)` would be `2 P (3 v + P)/(3 v + 4 P)`, at the root of
+/// `v^2 + (4 P/3 - h) v = 2 P (2 target + P/mu_e)/(3 theta_driven)`: as the logarithm is less this is above the root, and Newton's steps
+/// never overshoot. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
+fn clamped_slack<R: Real>(pull: R, target: R, driven_wrap: R, effective_friction: R, least: R) -> R {
+    let [one, two, four] = [1.0, 2.0, 4.0].map(R::constant);
+    let per_friction = (one / effective_friction).named("per_friction", "1/mu_e");
+    let per_wrap = (one / driven_wrap).named("per_wrap", "1/theta_driven");
+    let asymptote = ((target + pull * per_friction) * per_wrap).named("asymptote", "");
     let highest = asymptote.max(least).named("highest_slack", "");
-    let parameters = [belt_force, target, driven_wrap, effective_friction];
-    R::root_of::<ClampedPulley>((least / two, two * highest), highest, parameters)
+    let two_thirds = R::constant(2.0 / 3.0);
+    let half = ((asymptote - two_thirds * pull) / two).named("half", "");
+    let square = half.squared() + two_thirds * pull * ((target + pull * per_friction / four) * per_wrap);
+    let start = (half + square.sqrt()).max(least).named("first_slack", "");
+    R::root_of::<ClampedPulley>((least / two, two * highest), start, [pull, target, driven_wrap, per_friction])
 }
 
 /// The left side of [`clamped_slack`]'s equation without the torque's part, times four over the wedge factor, less the target.
@@ -178,12 +198,11 @@ struct ClampedPulley;
 impl RootFunction for ClampedPulley {
     #[inline(always)]
     fn at<R: Real>(parameters: [R; ROOT_PARAMETERS], slack: R) -> (R, R) {
-        let [one, two] = [1.0, 2.0].map(R::constant);
-        let [belt_force, target, driven_wrap, effective_friction] = parameters;
-        // Without a torque nothing is pulled; the quotient must not be 0/0 there.
-        let gain = (two * belt_force / slack.max(R::constant(1e-30))).named("gain", "F1/F2 - 1");
-        let idle = (driven_wrap - gain.ln_1p() / effective_friction).named("idle", "theta_driven - theta_a");
-        (slack * idle - target, idle + gain / (one + gain) / effective_friction)
+        let one = R::constant(1.0);
+        let [pull, target, driven_wrap, per_friction] = parameters;
+        let gain = (pull / slack).named("gain", "F1/F2 - 1");
+        let idle = (driven_wrap - gain.ln_1p() * per_friction).named("idle", "theta_driven - theta_a");
+        (slack * idle - target, idle + gain / (one + gain) * per_friction)
     }
 
     fn in_columns() -> Option<RootStep> {
@@ -221,12 +240,16 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
     let slip_force = (belt_force * cosine / (two * friction)).named("slip_force", "P cos(a/2)/(2 mu)");
     let to_hold = (clamped - slip_force).named("to_hold", "");
     let held = (to_hold / clamped).named("held", "");
-    let slack = if R::select(clamped, one, R::constant(0.0)).is_zero() {
-        one
+    let (slack, idle_force) = if R::select(clamped, one, R::constant(0.0)).is_zero() {
+        (one, one)
     } else {
         // Friction beyond the wedge has a status of its own.
-        let target = (four * to_hold / wedge.max(R::constant(1e-9))).max(R::constant(0.0)).named("aim", "");
-        clamped_slack(belt_force, target, driven_wrap, effective_friction, two * belt_force / driven_pull).named("slack", "2 F2")
+        let idle_force = (four * to_hold / wedge.max(R::constant(1e-9))).max(R::constant(0.0));
+        let idle_force = idle_force.named("idle_force", "2 F2 (theta_driven - theta_a)");
+        let pull = two * belt_force;
+        // Without a torque the whole wrap is never active: what is left must be above zero all the same.
+        let least = (pull / driven_pull).max(R::constant(2e-30)).named("least_slack", "");
+        (clamped_slack(pull, idle_force, driven_wrap, effective_friction, least).named("slack", "2 F2"), idle_force)
     };
     // Where a traction is given nothing of it may hang on the torque, so that a row of torques is prepared once.
     let clamped_sum = R::select(clamped, slack + belt_force, one);
@@ -238,11 +261,12 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
 
     let smaller_radius = driver_radius.min(driven_radius);
     let free_radius = (belt_length / (two * pi)).named("free_radius", "r0");
-    let idle_arc = driven_wrap - active_arc;
+    // Of a clamping force that is given it is what the slack side was sought for.
+    let idle_share = R::select(clamped, idle_force / clamped_sum, slack_share * (driven_wrap - active_arc)).named("idle_share", "");
     let active_part = (traction / (two * friction) * cosine).named("active_part", "");
     // (4), (15) and (5), (16)
     let driver_axial_coefficient = (one + traction) / four * driver_wrap * wedge;
-    let driven_axial_coefficient = slack_share / four * idle_arc * wedge + active_part;
+    let driven_axial_coefficient = idle_share / four * wedge + active_part;
     // Without friction along the radius the wedge factor is 1/tan(a/2).
     let unsupported = (cosine / sine).named("unsupported", "1/tan(a/2)");
     let belt_speed = driver_radius * belt.driver_speed;
@@ -263,7 +287,7 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
         driver_axial_coefficient,
         driven_axial_coefficient,
         driver_upper_coefficient: (one + traction) / four * driver_wrap * unsupported,
-        driven_upper_coefficient: slack_share / four * idle_arc * unsupported + active_part,
+        driven_upper_coefficient: idle_share / four * unsupported + active_part,
         thrust_ratio: driver_axial_coefficient / driven_axial_coefficient,
         unsupported,
         utilisation: R::select(clamped, slip_force / clamped, active_part / driven_axial_coefficient),

@@ -2,7 +2,7 @@
 
 use super::root::root_of_all;
 use super::{DOWN, EVERYTHING, Interval, UP, ZERO, greater, lesser};
-use crate::real::Real;
+use crate::real::{Real, Smoothness};
 
 impl Real for Interval {
     type Shared = Self;
@@ -141,6 +141,7 @@ impl Real for Interval {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        _smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {

@@ -1,7 +1,7 @@
 //! Intervals against the functions themselves.
 
 use super::*;
-use crate::real::Real;
+use crate::real::{Real, Smoothness};
 use std::cell::Cell;
 use std::f64::consts::PI;
 
@@ -72,6 +72,7 @@ fn a_root_takes_few_evaluations_and_is_tight() {
         let root = Interval::monotone_root(
             (Interval::constant(0.0), Interval::constant(10.0)),
             Interval::constant(9.0),
+            Smoothness::Unknown,
             [target],
             |[target], x| {
                 count.set(count.get() + 1);
@@ -88,9 +89,13 @@ fn a_root_takes_few_evaluations_and_is_tight() {
 #[test]
 fn where_some_have_no_root_everything_in_the_bracket_above_the_others_is_possible() {
     let at = |target: Interval| {
-        Interval::monotone_root((Interval::constant(0.0), Interval::constant(10.0)), Interval::constant(5.0), [target], |[target], x| {
-            (x - target, Interval::constant(1.0))
-        })
+        Interval::monotone_root(
+            (Interval::constant(0.0), Interval::constant(10.0)),
+            Interval::constant(5.0),
+            Smoothness::Unknown,
+            [target],
+            |[target], x| (x - target, Interval::constant(1.0)),
+        )
     };
     let some = at(between(4.0, 12.0));
     assert!(some.low > 3.9 && some.low <= 4.0 && some.high == 10.0, "{some:?}");

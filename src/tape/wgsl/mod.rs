@@ -10,6 +10,7 @@ mod lines;
 mod loops;
 
 use super::{Binary, Fields, List, ListRoot, Node, Onwards, Operation, Recordable, Rolled, Root, StageLists};
+use crate::real::Smoothness;
 use calls::{bounded_binary, bounded_unary, constant, plain_binary, plain_unary};
 use lines::put;
 
@@ -418,7 +419,7 @@ impl<'a> Writer<'a> {
     /// The functions that find a root, and the call of one.
     fn root(&mut self, node: Node, number: u8, arithmetic: Arithmetic) -> String {
         let list = self.list;
-        let ListRoot { root: Root { bracket, start, argument, value, slope, .. }, inner } = &list.roots[number as usize];
+        let ListRoot { root: Root { bracket, start, argument, value, slope, smoothness, .. }, inner } = &list.roots[number as usize];
         let own = self.name(node);
         let name = format!("{}_{own}", self.stage);
         // What the root and its function read, besides what depends on where the function is asked.
@@ -470,6 +471,10 @@ impl<'a> Writer<'a> {
         let kept: Vec<Node> = inner.iter().copied().filter(|&node| inside.is_kept(node)).collect();
         let [low, high, first] = [bracket.0, bracket.1, *start].map(|node| inside.operand(node, Arithmetic::Plain));
         let plain = inside.lines(&kept, Arithmetic::Plain, "        ");
+        let step = match smoothness {
+            Smoothness::Smooth => "smooth_newton_step",
+            Smoothness::Unknown => "newton_step",
+        };
         let [near_value, near_slope] = [*value, *slope].map(|node| inside.operand(node, Arithmetic::Plain));
         let bounded = inside.lines(&kept, Arithmetic::Bounded, "    ");
         let [value, slope] = [*value, *slope].map(|node| inside.operand(node, Arithmetic::Bounded));
@@ -480,7 +485,7 @@ impl<'a> Writer<'a> {
         put(&mut text, "    ", &format!("var search = begin_search({low}, {high}, {first});"), "");
         text.push_str("    for (var i = 0; i < NEWTON_STEPS && !search.done; i++) {\n        let x = search.x;\n");
         text.push_str(&plain);
-        put(&mut text, "        ", &format!("search = newton_step(search, {near_value}, {near_slope});"), "");
+        put(&mut text, "        ", &format!("search = {step}(search, {near_value}, {near_slope});"), "");
         text.push_str("    }\n    return search.x;\n}\n");
         put(&mut text, "\n", &format!("fn {name}_root({}) -> Real {{", parameters("Real")), "");
         put(&mut text, "    ", &format!("let x = constant({name}_near({values}));"), "");

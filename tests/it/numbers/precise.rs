@@ -3,7 +3,7 @@
 //! Sums of two f64 with the usual error-free additions and products (Dekker, Knuth): about 31 digits. Constants are the f64 numbers that
 //! the formula names.
 
-use beltspace::real::Real;
+use beltspace::real::{Real, Smoothness};
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -212,10 +212,11 @@ impl Real for Precise {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
-        let near = f64::monotone_root((bracket.0.high, bracket.1.high), start.high, [], |[], x| {
+        let near = f64::monotone_root((bracket.0.high, bracket.1.high), start.high, smoothness, [], |[], x| {
             let (value, slope) = function(parameters, Self::from(x));
             (value.high, slope.high)
         });

@@ -5,10 +5,10 @@
 use crate::every_function::every_function;
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, Set};
-use beltspace::real::Place;
+use beltspace::real::{Place, Smoothness};
 use beltspace::tape::{Binary, List, Node, Operation, Recording, Rolled, RolledLoop, Root, Store, Unary, wgsl};
 use loops::{Held, Whole};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -336,7 +336,8 @@ impl Reader<'_> {
         let near = name.replace("_root", "_near");
         let calls = self.calls;
         let bracket = ends(self, &near, "begin_search");
-        let plain = ends(self, &near, "newton_step");
+        let step = ["newton_step", "smooth_newton_step"].into_iter().find(|it| self.calls_of(&near).contains(*it)).expect("it searches");
+        let plain = ends(self, &near, step);
         self.calls = calls;
         let bounded = ends(self, &name, "root");
         if plain != bounded {
@@ -348,9 +349,17 @@ impl Reader<'_> {
             argument,
             value: bounded[0],
             slope: bounded[1],
+            smoothness: if step == "newton_step" { Smoothness::Unknown } else { Smoothness::Smooth },
             function: None,
         });
         self.push(Operation::Root(number))
+    }
+
+    /// The names of the functions that a function calls.
+    fn calls_of(&self, function: &str) -> BTreeSet<String> {
+        let mut calls = BTreeMap::new();
+        gather(&self.module.functions[self.named(function)].body, &mut calls);
+        calls.values().filter_map(|(it, _)| self.module.functions[*it].name.clone()).collect()
     }
 
     /// What a function stores in a structure or array, by field name or index.
@@ -403,12 +412,13 @@ fn rounded(list: &List) -> Expected {
         }
     }
     let at = |node: Node| place[node as usize];
-    let root = |Root { bracket, start, argument, value, slope, .. }| Root {
+    let root = |Root { bracket, start, argument, value, slope, smoothness, .. }| Root {
         bracket: (at(bracket.0), at(bracket.1)),
         start: at(start),
         argument: at(argument),
         value: at(value),
         slope: at(slope),
+        smoothness,
         // No shader is told of it.
         function: None,
     };
@@ -560,9 +570,10 @@ fn another_operation_in_a_shader_is_noticed() {
     for (piece, other) in [
         ("sub(driven_radius", "add(driven_radius"),
         ("constant(2.0)", "constant(2.5)"),
-        ("twice(lean)", "half(lean)"),
+        ("twice(lean_)", "half(lean_)"),
+        ("= smooth_newton_step(", "= newton_step("),
         ("(0.0, largest_radius", "(1.0, largest_radius"),
-        ("(free + ", "(free - "),
+        ("(straight + ", "(straight - "),
         ("p.traction = traction;", "p.traction = i.traction;"),
         ("out.entry_compression = p.entry_compression;", ""),
         ("mul(i.ratio, driver_radius)", "mul(driver_radius, i.ratio)"),
