@@ -230,7 +230,7 @@ fn step_of(search: Search, value: f32, slope: f32, is_smooth: bool) -> Search {
     let next = select(0.5 * (low + high), newton, is_newton);
     let moved = abs(next - search.x);
     let shrunk = moved / search.last;
-    let is_near = is_newton && search.last <= 1e-3 * abs(search.x);
+    let is_near = is_newton && search.last <= 1e-4 * abs(search.x);
     let no_more = is_smooth && is_near && moved * shrunk * shrunk <= 0.125 * ROUNDING * abs(search.x);
     let done = moved == 0.0 || no_more || (moved <= AT_ROUNDING * abs(search.x) && moved >= 0.5 * search.last);
     return Search(low, high, next, select(moved, NO_STEP, is_smooth && !is_newton), done);

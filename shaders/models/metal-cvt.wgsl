@@ -110,7 +110,10 @@ fn prepare(i: Inputs) -> Prepared {
     let sine_per_radius = div(ratio_less_one, i.centre_distance); // (R - 1)/A
     let both_half_turns = mul(Real(3.1415927, 8.7422784e-8), add(constant(1.0), i.ratio));
     let n20 = abs_(ratio_less_one);
-    let largest_radius = div(mul(constant(0.99999905), i.centre_distance), max_(n20, Real(1e-9, 2.8281934e-17)));
+    let largest_radius = div(
+        mul(Real(1.0, 5.6843426e-14), i.centre_distance),
+        max_(n20, Real(1e-9, 2.8281934e-17)),
+    );
     let n24 = twice(i.centre_distance);
     let length_margin = sub(i.belt_length, n24);
     let first_radius = div(

@@ -164,7 +164,7 @@ impl BatchTarget {
     /// Evaluates a model for every row.
     ///
     /// # Errors
-    /// As [`evaluate_into`] and [`GivenColumns::new`].
+    /// As [`evaluate_into`] and [`GivenColumns::new`]; after any of them the results are incomplete.
     ///
     /// # Panics
     /// If the target is a study.

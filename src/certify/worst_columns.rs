@@ -268,8 +268,12 @@ pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64, threads: u64) 
     let recorded = RECORDED * whole.recording.operations.len() as u64;
 
     let inputs: Vec<usize> = plan.study.design.iter().flat_map(Axis::inputs).copied().collect();
-    let ends = [0, plan.designs() - 1].map(|design| plan.space.inputs(design, 0));
-    let values: Vec<[f64; 2]> = inputs.iter().map(|&input| [ends[0][input], ends[1][input]]).collect();
+    let ends = |axis: &Axis, column: usize| {
+        let values = (0..axis.count()).map(|level| axis.value(column, level));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], it| [low.min(it), high.max(it)])
+    };
+    let of_axis = |axis: &'_ Axis| (0..axis.inputs().len()).map(|column| ends(axis, column)).collect::<Vec<_>>();
+    let values: Vec<[f64; 2]> = plan.study.design.iter().flat_map(of_axis).collect();
     let values: Vec<&[f64]> = values.iter().map(<[f64; 2]>::as_slice).collect();
     let found = WorstColumns::new(plan, columns, DesignColumns { inputs: &inputs, values: &values });
     let numbers = found.map_or(0, |it| it.each.iter().filter(|each| **each).count() + it.outputs.len() + 3 * columns.len());

@@ -14,8 +14,8 @@ pub const ROOT_PARAMETERS: usize = 4;
 pub enum Smoothness {
     /// It may have corners, as one that reads a measured curve.
     Unknown,
-    /// Its curvature changes little between the last steps to the root: each of them is about the square of the one before, times a
-    /// number. So what the next one would come to is known without it.
+    /// Near the root, over a ten-thousandth of it, the curvature changes little: each of the last steps is about the square of the one
+    /// before, times a number. So what the next one would come to is known without it.
     Smooth,
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn has_ended(last_step: f64) -> bool {
     last_step < 0.0
 }
 
-/// What is kept of the bits of a number on the way: 32 of its binary digits, so that the step from there goes beyond all of them.
+/// What is kept of the bits of a number on the way: its first 33 binary digits, so that the step from there goes beyond all of them.
 const FIRST_DIGITS: u64 = !0 << 20;
 
 /// A step of a search: where it is asked next, what is then known of the root, and the step. `rounding` is that of the function.
@@ -84,14 +84,14 @@ pub(crate) fn newton_step(at: RootSearch<f64>, value: f64, slope: f64, rounding:
 #[inline(always)]
 fn smooth_step(next: RootSearch<f64>, at: RootSearch<f64>, (is_newton, step): (bool, f64), rounding: f64) -> RootSearch<f64> {
     let (size, last_step) = (at.x.abs(), at.last_step);
-    // The next step would be step * (step / last_step)^2: where that is below rounding it is not taken. So is it only near the root, and only
-    // after a step of Newton's.
-    let is_near = is_newton & (last_step <= 1e-3 * size);
+    // The next step would be step * (step / last_step)^2, near the root and after a step of Newton's: below rounding it is not taken.
+    let is_near = is_newton & (last_step <= 1e-4 * size);
     let no_more = step * step * step <= 0.0625 * rounding * size * (last_step * last_step);
     let ends = has_ended(next.last_step) | (is_near & no_more);
-    // So the last step begins at the very same number where the slope was computed in another way.
+    // The last step then begins at the very same number, but for rare cases, where the slope was computed in another way.
     let is_on_the_way = (step > 1e-6 * size) & !ends;
-    let x = if is_on_the_way { f64::from_bits(next.x.to_bits() & FIRST_DIGITS) } else { next.x };
+    let cut = Real::min(Real::max(f64::from_bits(next.x.to_bits() & FIRST_DIGITS), next.low), next.high);
+    let x = if is_on_the_way { cut } else { next.x };
     let last_step = if is_newton { next.last_step } else { f64::INFINITY };
     RootSearch { x, last_step: if ends { -1.0 } else { last_step }, ..next }
 }
@@ -354,6 +354,18 @@ mod tests {
         let found = |smoothness| bracketed_newton((0.0, 2.0), 1.0 - 1e-4, f64::EPSILON, smoothness, corners);
         assert_eq!(found(Smoothness::Unknown), 1.0);
         assert!((found(Smoothness::Smooth) - 1.0).abs() > 0.1 * distance, "the corner is seen all the same: nobody needs to be told of it");
+    }
+
+    #[test]
+    fn a_search_stays_within_its_bracket_on_its_way() {
+        for (low, root) in [(0.7, 0.7), (-1.9, -1.9), (-0.3, 0.0), (0.1 + 0.2, 0.1 + 0.2)] {
+            let asked = |x: f64| {
+                assert!((low..=low + 5.0).contains(&x), "{x} is asked beyond {low}");
+                (3.0 * (x - root) + (x - root).powi(3), 3.0 + 3.0 * (x - root).powi(2))
+            };
+            let found = bracketed_newton((low, low + 5.0), low + 0.8, f64::EPSILON, Smoothness::Smooth, asked);
+            assert!((found - root).abs() <= 1e-15, "{found} in place of {root}");
+        }
     }
 
     #[test]

@@ -264,12 +264,21 @@ fn ranges(list: &List, inputs: &[Interval]) -> Vec<Interval> {
             continue;
         }
         list.compute(node as Node, &mut ranges);
-        let may_be_none = match operation {
-            Operation::Unary(Unary::Sqrt, a) => ranges[a as usize].low < 0.0,
-            Operation::Unary(Unary::Asin, a) => ranges[a as usize].low < -1.0 || ranges[a as usize].high > 1.0,
-            Operation::Unary(Unary::Sin | Unary::Cos, a) => !ranges[a as usize].is_finite(),
-            _ => false,
-        };
+        let mut may_be_none = false;
+        match operation {
+            Operation::Unary(kind, a) => {
+                let range = ranges[a as usize];
+                may_be_none = range == EVERYTHING
+                    || match kind {
+                        Unary::Sqrt => range.low < 0.0,
+                        Unary::Asin => range.low < -1.0 || range.high > 1.0,
+                        Unary::Sin | Unary::Cos => !range.is_finite(),
+                        _ => false,
+                    };
+            }
+            Operation::Root(number) => list.outside(number, |read| may_be_none |= ranges[read as usize] == EVERYTHING),
+            _ => {}
+        }
         if may_be_none {
             ranges[node] = EVERYTHING;
         }

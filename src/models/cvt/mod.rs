@@ -124,29 +124,28 @@ pub fn printed_torque_coefficient<R: Real>(pull: R, strength: R, elastic_modulus
     pull * strength.squared() / elastic_modulus * free_ratio * width / R::constant(2.0)
 }
 
-/// The largest sine of a lean that is looked at, 1 - 2^-20: pulleys that would need more overlap.
-const LARGEST_SINE: f64 = 1.0 - 1.0 / (1 << 20) as f64;
+/// The largest sine of a lean that is looked at, 1 - 2^-44: pulleys that would need more overlap.
+const LARGEST_SINE: f64 = 1.0 - 1.0 / (1_u64 << 44) as f64;
 
 /// Pitch radius of the driver of an open belt: the root of `2 A cos g + pi (1 + R) r + 2 g (R - 1) r = L`, `sin g = (R - 1) r/A`.
 ///
 /// The length is increasing and convex in r. The search starts at the root of its terms up to the second order,
-/// `2 A + pi (1 + R) r + (R - 1)^2 r^2/A = L`; as those left out are above zero, this is at or above the root that is looked for, and Newton's
-/// steps never overshoot.
+/// `2 A + pi (1 + R) r + (R - 1)^2 r^2/A = L`; as those left out are above zero, this is at or above the root that is looked for, and
+/// Newton's steps come down to it.
 fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
     let [one, two, four, pi] = [1.0, 2.0, 4.0, PI].map(R::constant);
     let Drive { ratio, belt_length, centre_distance, .. } = *belt;
     let step = (ratio - one).named("ratio_less_one", "");
-    let lean = (step / centre_distance).named("sine_per_radius", "(R - 1)/A");
+    let sine_per_radius = (step / centre_distance).named("sine_per_radius", "(R - 1)/A");
     let both = (pi * (one + ratio)).named("both_half_turns", "");
     // At A/|R - 1| one pulley would begin to lie inside the other; a little less, so that the sine of the lean stays below 1. Equal pulleys
     // have no such end: any large one serves.
-    let largest = R::constant(LARGEST_SINE) * centre_distance / step.abs().max(R::constant(1e-9));
+    let largest = (R::constant(LARGEST_SINE) * centre_distance / step.abs().max(R::constant(1e-9))).named("largest_radius", "");
     // Of a belt that is too short the start is below zero, whatever the square root.
     let chords = belt_length - two * centre_distance;
-    let square = both.squared() + four * step * lean * chords;
+    let square = both.squared() + four * step * sine_per_radius * chords;
     let start = (two * chords / (both + square.max(R::constant(0.0)).sqrt())).named("first_radius", "");
-    let largest = largest.named("largest_radius", "");
-    R::root_of::<BeltLength>((R::constant(0.0), largest), start, [lean, both, belt_length, centre_distance])
+    R::root_of::<BeltLength>((R::constant(0.0), largest), start, [sine_per_radius, both, belt_length, centre_distance])
 }
 
 /// The length that a belt has with this radius of the driver, less the belt's own.
@@ -178,7 +177,7 @@ impl RootFunction for BeltLength {
 /// is the root, so the bracket goes beyond it. It also begins below the root of a belt that just holds, so that boxes of designs next to
 /// slip surely have one. The search starts where `v log(1 + 2 P/v)` would be `2 P (3 v + P)/(3 v + 4 P)`, at the root of
 /// `v^2 + (4 P/3 - h) v = 2 P (2 target + P/mu_e)/(3 theta_driven)`: as the logarithm is less this is above the root, and Newton's steps
-/// never overshoot. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
+/// come down to it. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
 fn clamped_slack<R: Real>(pull: R, target: R, driven_wrap: R, effective_friction: R, least: R) -> R {
     let [one, two, four] = [1.0, 2.0, 4.0].map(R::constant);
     let per_friction = (one / effective_friction).named("per_friction", "1/mu_e");
@@ -261,7 +260,7 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
 
     let smaller_radius = driver_radius.min(driven_radius);
     let free_radius = (belt_length / (two * pi)).named("free_radius", "r0");
-    // Of a clamping force that is given it is what the slack side was sought for.
+    // The slack side's share times the idle arc; where the clamping force is given, by the equation that the slack side solves.
     let idle_share = R::select(clamped, idle_force / clamped_sum, slack_share * (driven_wrap - active_arc)).named("idle_share", "");
     let active_part = (traction / (two * friction) * cosine).named("active_part", "");
     // (4), (15) and (5), (16)

@@ -20,8 +20,8 @@ pub struct RecordedColumns {
     narrow: List,
     /// The ends that are meant, in the input's unit; `None`: of this column nothing was supposed.
     supposed: Vec<Option<(f64, f64)>>,
-    /// For any columns.
-    wide: OnceLock<List>,
+    /// For all that the columns hold, if that pays.
+    wide: OnceLock<Option<List>>,
     judge: ColumnJudge,
 }
 
@@ -87,7 +87,9 @@ impl RecordedColumns {
     /// Records a formula; `None` if that cannot be, or does not pay.
     pub fn new(asked: &AskedColumns<'_>) -> Option<Self> {
         asked.model.kernel.formula()?;
-        let supposed: Vec<_> = asked.given.iter().map(|(_, values)| supposed(values)).collect();
+        // Of words and numbers all are looked at.
+        let is_of_numbers = |input: usize| asked.model.inputs[input].words.is_empty();
+        let supposed: Vec<_> = asked.given.iter().map(|&(input, values)| supposed(values).filter(|_| is_of_numbers(input))).collect();
         let narrow = Self::recorded(asked, |column| supposed[column]);
         let judge = ColumnJudge::new(asked.model, asked.outputs, |_| true);
         (narrow.operations.len() <= MOST_OPERATIONS).then_some(Self { narrow, supposed, wide: OnceLock::new(), judge })
@@ -133,7 +135,15 @@ impl RecordedColumns {
         let (list, room) = if ends.iter().zip(&self.supposed).all(is_within) {
             (&self.narrow, &mut rooms.narrow)
         } else {
-            (self.wide.get_or_init(|| Self::recorded(asked, |_| None)), &mut rooms.wide)
+            let of_all = || {
+                let ends: Vec<ColumnEnds> = given.iter().map(|(_, values)| super::ends(values)).collect();
+                let list = Self::recorded(asked, |column| ends[column].numbers.then_some((ends[column].low, ends[column].high)));
+                Some(list).filter(|list| list.operations.len() <= MOST_OPERATIONS)
+            };
+            let Some(list) = self.wide.get_or_init(of_all) else {
+                return asked.one_by_one(ResultPart { first, results: ResultColumns { statuses, outputs } });
+            };
+            (list, &mut rooms.wide)
         };
         let RecordedRoom { columns, judge } = room.get_or_insert_with(|| RecordedRoom::new(list));
         let mut judged = [0; LIST_CHUNK];

@@ -394,6 +394,31 @@ mod tests {
     }
 
     #[test]
+    fn rows_beyond_what_a_sample_says_have_the_bits_that_they_have_alone() {
+        for model in crate::models::all().iter().filter(|model| model.name != "pulley") {
+            let mut columns = varied(model, 6000);
+            // Rows that no sample has: of some numbers half as much again, and of one input nothing at all.
+            let numbers = columns.iter_mut().filter(|(input, _)| model.inputs[*input].words.is_empty() && !model.inputs[*input].integer);
+            for (place, (_, values)) in numbers.enumerate() {
+                let row = 300 + place % 3;
+                values[row] = if place == 5 { f64::NAN } else { 1.5 * values[row] };
+                values[5000 + place % 3] *= 1.7;
+            }
+            let named: Vec<(&str, &[f64])> = columns.iter().map(|(input, values)| (&*model.inputs[*input].name, &values[..])).collect();
+            let every = evaluate_columns(model, &named, &ManyOptions::default().threads(2)).expect("the names are the model's");
+            for row in (0..6000).step_by(41).chain(295..310).chain(4995..5008) {
+                let inputs: Vec<f64> = columns.iter().map(|(_, values)| values[row]).collect();
+                let alone = evaluate(model, &inputs);
+                assert_eq!(every.statuses[row], alone.status, "{} {row}", model.name);
+                for (output, &value) in alone.outputs.iter().enumerate() {
+                    let bits = value.unwrap_or(f64::NAN).to_bits();
+                    assert_eq!(every.outputs[output][row].to_bits(), bits, "{} {row} {}", model.name, model.outputs[output].name);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn work_that_is_stopped_says_so() {
         let model = crate::models::find("metal-cvt").expect("it is a model");
         let values = vec![0.1; 5000];

@@ -141,10 +141,10 @@ impl Real for Interval {
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),
         start: Self,
-        _smoothness: Smoothness,
+        smoothness: Smoothness,
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
-        root_of_all(bracket, start, |place| function(parameters, place))
+        root_of_all(bracket, start, smoothness, |place| function(parameters, place))
     }
 }
