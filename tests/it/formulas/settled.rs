@@ -4,7 +4,8 @@ use super::parsed;
 use super::same::STUDIES;
 use crate::random::Random;
 use beltspace::models::Model;
-use beltspace::tape::{Known, List, Operation, Reads, Set, SettledStages, StageLists};
+use beltspace::real::Real;
+use beltspace::tape::{Binary, Known, List, Loops, Operation, Reads, Recording, Set, SettledStages, StageLists, Trace, Whole};
 use std::sync::Arc;
 
 fn model(name: &str) -> Arc<Model> {
@@ -181,5 +182,34 @@ fn little_is_left_to_be_asked_in_a_study() {
         let model = model(name);
         let asked: Vec<&str> = in_file.open.iter().map(|condition| &*model.conditions[condition].reason).collect();
         assert!(open <= 18 && asked_everything.open.len() > 2 * open, "{name}: of {} {asked:?}", asked_everything.open.len());
+    }
+}
+
+/// The operations that are left of a formula of one input of this range.
+fn settled_alone(range: Known, formula: impl FnOnce(Trace) -> Trace) -> Vec<Operation> {
+    let (recording, outputs) = Recording::recorded(Loops::EveryIteration, &[range], |inputs| vec![formula(inputs[0])]);
+    let whole = Whole { recording, prepared: Vec::new(), outputs, conditions: Vec::new() };
+    whole.settled(&[range], &[0], []).operations
+}
+
+#[test]
+fn what_may_be_no_number_settles_nothing_and_zero_takes_away_what_is_surely_a_number() {
+    let is_kept = |range: Known, formula: fn(Trace) -> Trace, what: fn(&Operation) -> bool| settled_alone(range, formula).iter().any(what);
+    let chooses = |operation: &Operation| matches!(operation, Operation::Binary(Binary::Max, ..));
+    let formulas: [fn(Trace) -> Trace; 4] = [
+        |x| x.sqrt().max(Trace::constant(-5.0)),
+        |x| x.asin().max(Trace::constant(-5.0)),
+        |x| (x.sqrt() - Trace::constant(0.5)).exp_m1().max(Trace::constant(-5.0)),
+        |x| x.asin().sin().max(Trace::constant(-5.0)),
+    ];
+    for (number, formula) in formulas.into_iter().enumerate() {
+        assert!(!is_kept(Known::Within(0.0, 0.9), formula, chooses), "{number} is a number everywhere");
+        assert!(is_kept(Known::Within(-1.5, 0.9), formula, chooses), "{number} may be none");
+    }
+    let multiplies = |operation: &Operation| matches!(operation, Operation::Binary(Binary::Mul | Binary::Sub, ..));
+    let without_mass: fn(Trace) -> Trace = |x| x - Trace::constant(0.0) * (x * Trace::constant(0.0)).squared();
+    assert!(!is_kept(Known::Within(0.5, 2.0), without_mass, multiplies));
+    for range in [Known::Within(-0.5, 2.0), Known::Within(0.0, 2.0), Known::ANY] {
+        assert!(is_kept(range, without_mass, multiplies), "its zero may be a negative one, or no number: {range:?}");
     }
 }

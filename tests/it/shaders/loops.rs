@@ -1,6 +1,6 @@
 //! Reads the statements of a shader's function back: what it assigns, its loops, and what these write into tables.
 
-use super::{Body, Reader, Value};
+use super::reader::{Body, Reader, Value};
 use beltspace::real::Place;
 use beltspace::tape::{Node, Operation, Rolled, RolledLoop, Store};
 use wgpu::naga::{Block, Expression, Handle, Literal, LocalVariable, MathFunction, Statement, TypeInner, UnaryOperator};
