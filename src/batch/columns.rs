@@ -187,7 +187,7 @@ impl BatchTarget {
         self.evaluate_checking(&given, options, ResultColumns { statuses, outputs }, &AtomicBool::new(false))
     }
 
-    /// The same; whether a number that had not been checked may be wrong is told.
+    /// The same; `refused` is set where a number that nobody had checked may be wrong.
     fn evaluate_checking<S: From<Status> + Send>(
         &self,
         given: &GivenColumns<'_>,

@@ -25,7 +25,7 @@ pub struct RecordedColumns {
     judge: ColumnJudge,
 }
 
-/// Room for a thread that evaluates, for each of the two lists.
+/// Room for a thread that evaluates, for each of the two lists; made where it is used.
 #[derive(Default)]
 pub struct RecordedRooms {
     narrow: Option<RecordedRoom>,
@@ -112,11 +112,6 @@ impl RecordedColumns {
         let formula = model.kernel.formula().expect("it has been looked for");
         let whole = formula.whole(&known, Set::of(outputs), (0..model.conditions.len()).collect());
         whole.settled(&known, outputs, model.conditions.iter().map(|it| it.strict))
-    }
-
-    /// Room for a thread.
-    pub fn rooms(&self) -> RecordedRooms {
-        RecordedRooms::default()
     }
 
     /// Fills some rows of the result, whose inputs have these ends.

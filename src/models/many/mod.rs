@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::likeness::closest;
 use crate::parallel::on_threads;
 use crate::tape::{LIST_CHUNK, Set};
-use columns::RecordedColumns;
+use columns::{RecordedColumns, RecordedRooms};
 pub(crate) use judge::{ColumnJudge, JudgeRoom};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -235,16 +235,16 @@ pub fn evaluate_into<S: From<Status> + Send>(
     let take = || next.lock().unwrap_or_else(PoisonError::into_inner).next();
     let refused = AtomicBool::new(false);
     on_threads(0..threads, |_| {
-        let mut rooms = recorded.as_ref().map(RecordedColumns::rooms);
+        let mut rooms = RecordedRooms::default();
         while let Some(part) = take() {
             let ends = asked.ends(part.rows());
             refused.fetch_or(!asked.accepts(&ends), Ordering::Relaxed);
             if refused.load(Ordering::Relaxed) {
                 break;
             }
-            match (&recorded, &mut rooms) {
-                (Some(recorded), Some(rooms)) => recorded.evaluate(&asked, part, &ends, rooms),
-                _ => asked.one_by_one(part),
+            match &recorded {
+                Some(recorded) => recorded.evaluate(&asked, part, &ends, &mut rooms),
+                None => asked.one_by_one(part),
             }
         }
     });
